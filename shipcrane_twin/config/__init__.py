@@ -1,0 +1,1 @@
+"""Settings: frozen dataclasses, YAML reading, and errors that say what to do."""

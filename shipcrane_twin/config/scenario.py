@@ -1,0 +1,205 @@
+"""A scenario: everything a run depends on, and the checks across its parts."""
+
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le
+
+from shipcrane_twin.config.crane import (
+    CraneConfig,
+    NotNegative,
+    PayloadConfig,
+    Positive,
+    WinchConfig,
+    WireConfig,
+)
+from shipcrane_twin.config.settings import Number, Text, Whole, settings
+from shipcrane_twin.config.vessel import DpConfig, VesselConfig
+
+NS_PER_MS = 1_000_000
+NS_PER_S = 1_000_000_000
+WINCH = "winch"
+
+
+@settings
+class ConstantsConfig:
+    """One gravity, one water, one air for all parts."""
+
+    gravity_m_s2: Annotated[Number, Gt(0), Le(30)]
+    water_density_kg_m3: Positive
+    air_density_kg_m3: Positive
+
+
+@settings
+class LockstepConfig:
+    """How the graph keeps step; none of it can change a result."""
+
+    run_ahead_steps: Annotated[Whole, Ge(1), Le(50)]
+    silence_timeout_s: Positive
+    speed: NotNegative
+
+
+@settings
+class EnvironmentConfig:
+    """Steady current and wind; directions are towards, clockwise from north."""
+
+    current_speed_m_s: Annotated[Number, Ge(0), Le(10)]
+    current_direction_to_deg: Number
+    wind_speed_m_s: Annotated[Number, Ge(0), Le(100)]
+    wind_direction_to_deg: Number
+
+
+@settings
+class OperationConfig:
+    """One joint command: a velocity held from one time to another."""
+
+    label: Text
+    joint: Text
+    from_s: NotNegative
+    to_s: NotNegative
+    velocity_rad_s: Number | None = None
+    velocity_m_s: Number | None = None
+
+
+@settings
+class EventConfig:
+    """Something that happens at one time."""
+
+    label: Text
+    at_s: NotNegative
+    event: Literal["release_payload"]
+
+
+@settings
+class RecordingConfig:
+    """How the bag is written."""
+
+    compression: Literal["zstd", "none"]
+    chunk_kib: Annotated[Whole, Ge(16), Le(65536)]
+
+
+@settings
+class Scenario:
+    """A complete, resolved scenario."""
+
+    name: Text
+    title: Text
+    seed: Annotated[Whole, Ge(0)]
+    duration_s: Positive
+    macro_step_ms: Annotated[Number, Gt(0), Le(200)]
+    telemetry_period_ms: Positive
+    coupling: Text
+    constants: ConstantsConfig
+    lockstep: LockstepConfig
+    environment: EnvironmentConfig
+    vessel: VesselConfig
+    dp: DpConfig
+    crane: CraneConfig
+    wire: WireConfig
+    winch: WinchConfig
+    payload: PayloadConfig
+    operations: tuple[OperationConfig, ...] = ()
+    events: tuple[EventConfig, ...] = ()
+    recording: RecordingConfig
+
+    @property
+    def step_ns(self) -> int:
+        """The macro step [ns]."""
+        return round(self.macro_step_ms * NS_PER_MS)
+
+    @property
+    def step_count(self) -> int:
+        """How many macro steps the run has."""
+        return round(self.duration_s * NS_PER_S) // self.step_ns
+
+    @property
+    def telemetry_every(self) -> int:
+        """How many macro steps lie between two telemetry messages."""
+        return round(self.telemetry_period_ms * NS_PER_MS) // self.step_ns
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the crane's joints, base to tip."""
+        return tuple(link.joint for link in self.crane.links)
+
+
+def problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Return what is wrong across the parts of a scenario: key path and advice for each.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Already right in types and single ranges.
+    """
+    return [
+        *time_problems(scenario),
+        *crane_problems(scenario),
+        *operation_problems(scenario),
+        *winch_problems(scenario),
+    ]
+
+
+def time_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that the macro step is whole nanoseconds and divides every period."""
+    step_ns = scenario.macro_step_ms * NS_PER_MS
+    if abs(step_ns - round(step_ns)) > 1e-6:
+        return [(["macro_step_ms"], "expected whole nanoseconds")]
+    periods_ns = {
+        "duration_s": scenario.duration_s * NS_PER_S,
+        "telemetry_period_ms": scenario.telemetry_period_ms * NS_PER_MS,
+        "dp.period_ms": scenario.dp.period_ms * NS_PER_MS,
+        "dp.enabled_at_s": scenario.dp.enabled_at_s * NS_PER_S,
+    }
+
+    def undivided(step: int) -> list[str]:
+        return [key for key, value in periods_ns.items() if value % step]
+
+    wrong = undivided(scenario.step_ns)
+    if not wrong:
+        return []
+    fitting = [str(ms) for ms in (1, 2, 4, 5, 10, 20, 25, 40, 50, 100) if not undivided(ms * NS_PER_MS)]
+    advice = f"; steps that do: {', '.join(fitting)}" if fitting else "; make the periods whole milliseconds"
+    return [(["macro_step_ms"], f"expected a step that divides {', '.join(wrong)}{advice}")]
+
+
+def crane_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that the crane has the joints that commands name, and a start value for each."""
+    crane = scenario.crane
+    count = len(crane.links)
+    found: list[tuple[list[str | int], str]] = []
+    if len(crane.initial_joints) != count:
+        names = ", ".join(scenario.joint_names)
+        found.append((["crane", "initial_joints"], f"expected {count} values, one per joint ({names})"))
+    if scenario.joint_names != ("slew", "boom", "knuckle", "telescope"):
+        found.append((["crane", "links"], "expected the joints slew, boom, knuckle, telescope in this order"))
+    return found
+
+
+def operation_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check joints, times and units of the operations and the times of events."""
+    found: list[tuple[list[str | int], str]] = []
+    kinds = {link.joint: link.kind for link in scenario.crane.links} | {WINCH: "prismatic"}
+    busy: dict[str, list[tuple[float, float]]] = {}
+    for i, move in enumerate(scenario.operations):
+        here: list[str | int] = ["operations", i]
+        if move.joint not in kinds:
+            found.append(([*here, "joint"], f"expected one of {', '.join(kinds)}"))
+            continue
+        wanted = "velocity_rad_s" if kinds[move.joint] == "revolute" else "velocity_m_s"
+        if (move.velocity_rad_s is None) == (move.velocity_m_s is None) or getattr(move, wanted) is None:
+            found.append((here, f"expected exactly one speed, {wanted}, for the {kinds[move.joint]} {move.joint}"))
+        if move.to_s <= move.from_s:
+            found.append(([*here, "to_s"], f"expected a time after from_s = {move.from_s:g}"))
+        for start, end in busy.setdefault(move.joint, []):
+            if move.from_s < end and start < move.to_s:
+                found.append((here, f"expected no overlap with another move of {move.joint}, {start:g} to {end:g} s"))
+        busy[move.joint].append((move.from_s, move.to_s))
+    return found
+
+
+def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check the order of the winch's lengths."""
+    winch = scenario.winch
+    if not winch.length_min_m <= winch.initial_length_m <= winch.length_max_m:
+        limits = f"{winch.length_min_m:g} to {winch.length_max_m:g}"
+        return [(["winch", "initial_length_m"], f"expected a length within the winch's limits, {limits}")]
+    return []

@@ -1,0 +1,1 @@
+"""Controllers of ship and crane as pure functions, usable without ROS."""

@@ -1,0 +1,1 @@
+"""Co-simulation: integer time, subsystems, coupling schemes and the in-process runner."""

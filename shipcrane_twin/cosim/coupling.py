@@ -1,0 +1,65 @@
+"""Coupling schemes: which value of a neighbour a subsystem uses, and who carries whose inertia.
+
+A macro step is a chain environment, vessel, crane, payload. In it a subsystem may use the value of a
+subsystem before it at the end of the step (motion, interpolated over the step), and of one behind it
+the value of the step before (feedback: forces as means over the interval, never extrapolated).
+"""
+
+from dataclasses import dataclass
+
+CHAIN = ("environment", "vessel", "crane", "payload")
+"""The subsystems in the order in which a step runs through them."""
+
+INPUTS: dict[str, tuple[str, ...]] = {
+    "environment": ("/vessel/odom",),
+    "vessel": (
+        "/environment/current",
+        "/environment/wind_wrench",
+        "/crane/base_wrench",
+        "/crane/base_inertia",
+    ),
+    "crane": ("/vessel/odom", "/vessel/accel", "/payload/wire_wrench"),
+    "payload": ("/crane/tip",),
+}
+"""The topics that each subsystem waits for in every step."""
+
+FEEDBACK: dict[tuple[str, str], str] = {
+    ("vessel", "environment"): "ship motion to wind loads",
+    ("crane", "vessel"): "crane wrench and inertia to ship",
+    ("payload", "crane"): "wire force to crane tip",
+}
+"""Every link (from, to) against the direction of the chain, with its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scheme:
+    """A coupling scheme.
+
+    Attributes
+    ----------
+    name : str
+        As in the scenario's ``coupling``.
+    carries_inertia : bool
+        The vessel adds the crane's frozen-joint inertia and weight to its own, and the crane's wrench
+        counts without that part. The ship's immediate reaction to the crane is then inside its own
+        equations instead of a step late.
+    about : str
+        For people.
+    """
+
+    name: str
+    carries_inertia: bool
+    about: str
+
+    def lag(self, consumer: str, publisher: str) -> int:
+        """Return how many steps old the publisher's value is that the consumer uses: 0 or 1."""
+        return 0 if CHAIN.index(publisher) < CHAIN.index(consumer) else 1
+
+
+SCHEMES = {
+    scheme.name: scheme
+    for scheme in (
+        Scheme("in_turn", False, "in turn, motion interpolated, mean forces fed back"),
+        Scheme("in_turn+inertia", True, "in_turn, and the ship carries the crane's inertia and weight"),
+    )
+}

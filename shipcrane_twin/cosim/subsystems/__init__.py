@@ -1,0 +1,21 @@
+"""The four parts of the twin, each with its own state, stepped by the inline runner or by a node."""
+
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim.subsystems.base import Signals, Subsystem
+from shipcrane_twin.cosim.subsystems.crane import Crane
+from shipcrane_twin.cosim.subsystems.environment import Environment
+from shipcrane_twin.cosim.subsystems.payload import Payload
+from shipcrane_twin.cosim.subsystems.vessel import Vessel
+
+__all__ = ["Signals", "Subsystem", "make_subsystem"]
+
+
+def make_subsystem(name: str, scenario: Scenario) -> Subsystem:
+    """Return a subsystem of the chain by name, at its initial state."""
+    makers: dict[str, type[Environment | Vessel | Crane | Payload]] = {
+        "environment": Environment,
+        "vessel": Vessel,
+        "crane": Crane,
+        "payload": Payload,
+    }
+    return makers[name](scenario)

@@ -1,0 +1,116 @@
+"""The crane on the moving ship."""
+
+import math
+
+import numpy as np
+
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim import build
+from shipcrane_twin.cosim.commands import JointCommands
+from shipcrane_twin.cosim.initial import at_rest
+from shipcrane_twin.cosim.subsystems.base import Signals
+from shipcrane_twin.cosim.time import seconds
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.crane_base import base_motion, tip_odometry, turned_force
+from shipcrane_twin.physics.crane_cylinders import TRIANGLE, joint_rates_per_length, lengths_from_joints
+from shipcrane_twin.physics.crane_dynamics import base_wrench
+from shipcrane_twin.physics.crane_inertia import composite_inertia
+from shipcrane_twin.physics.crane_motion import (
+    ServoParams,
+    crane_step,
+    servo_gains,
+    static_reference,
+)
+from shipcrane_twin.physics.crane_reference import make_limits
+from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
+
+
+class Crane:
+    """Joints with their servos on a base that moves with the ship; the load pulls at the tip."""
+
+    name = "crane"
+
+    def __init__(self, scenario: Scenario) -> None:
+        crane = scenario.crane
+        self._chain = build.crane_chain(crane)
+        self._drives = build.crane_drives(crane)
+        self._base = np.array(crane.base_m)
+        self._gravity = scenario.constants.gravity_m_s2
+        self._step_ns = scenario.step_ns
+        self._step_s = seconds(scenario.step_ns)
+        self._micro = math.ceil(scenario.macro_step_ms / crane.servo.micro_step_max_ms)
+        self._telemetry_every = scenario.telemetry_every
+        self.commands = JointCommands(scenario.joint_names, scenario.operations)
+        self._command = np.zeros(len(crane.links))
+
+        rest = at_rest(scenario)
+        rot = matrix_from_quat(rest.vessel[3:7])
+        still = np.zeros(3)
+        force_b = rotate_to_body(rot, rest.wire_force_w)
+        proper_b = self._gravity * rot[2]
+        q = rest.joints
+        frequencies = [link.drive.servo_frequency_hz for link in crane.links]
+        kp, kd = servo_gains(self._chain, q, frequencies, crane.servo.damping_ratio)
+        self._servo = ServoParams(kp, kd, np.array([link.drive.effort_max for link in crane.links]))
+        held = static_reference(self._chain, q, kp, proper_b, force_b)
+        self._limits = make_limits(
+            self._drives,
+            length_rate_max=[link.drive.speed_max for link in crane.links],
+            accel_max=[link.drive.accel_max for link in crane.links],
+            end_margin=[link.drive.end_margin_m or 0.0 for link in crane.links],
+            sag=held - q,
+        )
+        zeros = np.zeros_like(q)
+        self._state = np.concatenate((q, zeros, held, zeros))
+        self._effort = kp * (held - q)
+        self._wrench = base_wrench(self._chain, q, zeros, zeros, still, still, proper_b, force_b)
+        self._odom = np.zeros(13)
+        self._odom[:3] = rest.tip_w - rot @ (self._base + rest.tip_b)
+        self._odom[3:7] = rest.vessel[3:7]
+        self._motion = base_motion(self._odom, np.zeros(6), self._base, self._gravity)
+
+    def start(self) -> Signals:
+        """Return the crane at rest at t = 0."""
+        return self._outputs(0)
+
+    def step(self, k: int, inputs: Signals) -> Signals:
+        """Move the crane over step k: ship motion linear over the step, wire force held in the world."""
+        odom = inputs["/vessel/odom"]
+        force_w = inputs["/payload/wire_wrench"][:3]
+        motion = base_motion(odom, inputs["/vessel/accel"], self._base, self._gravity)
+        before = np.concatenate((self._motion, turned_force(self._odom, force_w)))
+        after = np.concatenate((motion, turned_force(odom, force_w)))
+        self._command = self.commands.at((k - 1) * self._step_ns)
+        self._state, self._wrench, self._effort, *_ = crane_step(
+            self._chain,
+            self._servo,
+            self._limits,
+            self._state,
+            self._command,
+            before,
+            after,
+            self._micro,
+            self._step_s,
+        )
+        self._odom, self._motion = odom, motion
+        return self._outputs(k)
+
+    def _outputs(self, k: int) -> Signals:
+        n = len(self._command)
+        q, qd = self._state[:n], self._state[n : 2 * n]
+        out = {
+            "/crane/tip": tip_odometry(self._chain, q, qd, self._odom, self._base),
+            "/crane/base_wrench": self._wrench,
+            "/crane/base_inertia": composite_inertia(self._chain, q),
+        }
+        if k % self._telemetry_every == 0:
+            out["/crane/joint_states"] = self._joint_states(q, qd)
+            out["/crane/joint_command_applied"] = self._command
+        return out
+
+    def _joint_states(self, q: Array, qd: Array) -> Array:
+        booms = self._drives.kind == TRIANGLE
+        lengths = lengths_from_joints(self._drives, q)[booms]
+        slopes = joint_rates_per_length(self._drives, q)[booms]  # the cylinder's effective lever arm, inverted
+        rates, forces = qd[booms] / slopes, self._effort[booms] * slopes
+        return np.concatenate((q, lengths, qd, rates, self._effort, forces))

@@ -1,0 +1,248 @@
+"""The topic table: the one place that says what is published, by whom, for whom, and in which layout.
+
+A signal is a flat float64 array. Its columns by message type:
+
+- Odometry: position (3), quaternion x y z w (4), linear (3) and angular velocity (3);
+- PoseStamped: position (3), quaternion (4);
+- TwistStamped, AccelStamped: linear (3), angular (3);
+- WrenchStamped: force (3), torque (3);
+- InertiaStamped: mass, CoM (3), xx xy xz yy yz zz;
+- JointState: position, velocity and effort of all joints, those that the topic carries.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+POSE = "geometry_msgs/msg/PoseStamped"
+TWIST = "geometry_msgs/msg/TwistStamped"
+ACCEL = "geometry_msgs/msg/AccelStamped"
+WRENCH = "geometry_msgs/msg/WrenchStamped"
+INERTIA = "geometry_msgs/msg/InertiaStamped"
+JOINTS = "sensor_msgs/msg/JointState"
+CLOCK = "rosgraph_msgs/msg/Clock"
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
+
+WIDTHS = {ODOMETRY: 13, POSE: 7, TWIST: 6, ACCEL: 6, WRENCH: 6, INERTIA: 10}
+JOINT_FIELDS = ("position", "velocity", "effort")
+
+Rate = Literal["step", "telemetry", "irregular"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Topic:
+    """One topic.
+
+    Attributes
+    ----------
+    name, type : str
+        ROS name and message type.
+    publisher : str
+        The subsystem (or ``clock``, ``operator``) that publishes it.
+    rate : str
+        ``step``: every macro step; ``telemetry``: every telemetry period; ``irregular``.
+    frame, child_frame : str
+        Header frame and, for odometry, child frame.
+    joints, fields : tuple of str
+        For JointState: names, and which of position, velocity, effort are filled.
+    about : str
+        What it means, with units and reference point.
+    """
+
+    name: str
+    type: str
+    publisher: str
+    about: str
+    rate: Rate = "step"
+    frame: str = ""
+    child_frame: str = ""
+    joints: tuple[str, ...] = ()
+    fields: tuple[str, ...] = JOINT_FIELDS
+
+    @property
+    def width(self) -> int:
+        """How many values a signal of this topic has."""
+        return len(self.joints) * len(self.fields) if self.type == JOINTS else WIDTHS[self.type]
+
+
+CRANE_JOINTS = ("slew", "boom", "knuckle", "telescope")
+COMMAND_JOINTS = (*CRANE_JOINTS, "winch")
+BOOM_CYLINDERS = ("boom_cylinder", "knuckle_cylinder")
+THRUSTERS = ("azimuth_port", "azimuth_starboard", "bow_tunnel")
+
+TOPICS: tuple[Topic, ...] = (
+    Topic(
+        name="/clock",
+        type=CLOCK,
+        publisher="clock",
+        about="Simulated time up to which every participant may compute.",
+    ),
+    Topic(
+        name="/environment/current",
+        type=TWIST,
+        publisher="environment",
+        frame="map",
+        about="Velocity of the water, ENU [m/s]; angular part zero.",
+    ),
+    Topic(
+        name="/environment/wind",
+        type=TWIST,
+        publisher="environment",
+        frame="map",
+        about="Velocity of the air, ENU [m/s]; angular part zero.",
+    ),
+    Topic(
+        name="/environment/wind_wrench",
+        type=WRENCH,
+        publisher="environment",
+        frame="base_link",
+        about="Wind load on the ship about its CoG, base_link axes [N, N m], held over the step.",
+    ),
+    Topic(
+        name="/vessel/odom",
+        type=ODOMETRY,
+        publisher="vessel",
+        frame="map",
+        child_frame="base_link",
+        about="Pose of base_link; velocity of its origin and angular velocity, base_link axes [m, m/s, rad/s].",
+    ),
+    Topic(
+        name="/vessel/accel",
+        type=ACCEL,
+        publisher="vessel",
+        frame="base_link",
+        about="Acceleration of base_link's origin, without gravity, and angular acceleration, base_link axes [m/s2, rad/s2].",
+    ),
+    Topic(
+        name="/crane/tip",
+        type=ODOMETRY,
+        publisher="crane",
+        frame="map",
+        child_frame="crane_tip",
+        about="Pose of the crane tip; velocities in crane_tip axes [m, m/s, rad/s].",
+    ),
+    Topic(
+        name="/crane/base_wrench",
+        type=WRENCH,
+        publisher="crane",
+        frame="crane_base",
+        about="Crane and load on the ship at crane_base's origin, weight included, mean over the step [N, N m].",
+    ),
+    Topic(
+        name="/crane/base_inertia",
+        type=INERTIA,
+        publisher="crane",
+        frame="crane_base",
+        about="The crane as one rigid body, joints frozen: mass, CoM, inertia about the CoM [kg, m, kg m2].",
+    ),
+    Topic(
+        name="/payload/wire_wrench",
+        type=WRENCH,
+        publisher="payload",
+        frame="map",
+        about="Force of the wire on the crane tip, ENU axes, mean over the step [N]; torque zero.",
+    ),
+    Topic(
+        name="/payload/odom",
+        type=ODOMETRY,
+        publisher="payload",
+        frame="map",
+        child_frame="payload",
+        about="Position and velocity of the load; a point mass, so its axes stay those of map [m, m/s].",
+    ),
+    Topic(
+        name="/vessel/pose",
+        type=POSE,
+        publisher="vessel",
+        rate="telemetry",
+        frame="map",
+        about="Pose of base_link, as in /vessel/odom.",
+    ),
+    Topic(
+        name="/dp/setpoint",
+        type=POSE,
+        publisher="vessel",
+        rate="telemetry",
+        frame="map",
+        about="Wanted position of the CoG (height zero) and heading.",
+    ),
+    Topic(
+        name="/dp/wrench",
+        type=WRENCH,
+        publisher="vessel",
+        rate="telemetry",
+        frame="base_link",
+        about="Load that DP asks for about the CoG: surge, sway, yaw [N, N m]; zero while DP is off.",
+    ),
+    Topic(
+        name="/thrusters/joint_states",
+        type=JOINTS,
+        publisher="vessel",
+        rate="telemetry",
+        frame="base_link",
+        joints=THRUSTERS,
+        fields=("position", "effort"),
+        about="Direction of thrust, anticlockwise from forward [rad], and thrust [N].",
+    ),
+    Topic(
+        name="/crane/joint_states",
+        type=JOINTS,
+        publisher="crane",
+        rate="telemetry",
+        frame="crane_base",
+        joints=(*CRANE_JOINTS, *BOOM_CYLINDERS),
+        about="Joints [rad, m; rad/s, m/s; N m, N] and boom cylinders [m, m/s, N].",
+    ),
+    Topic(
+        name="/crane/joint_command_applied",
+        type=JOINTS,
+        publisher="crane",
+        rate="telemetry",
+        frame="crane_base",
+        joints=CRANE_JOINTS,
+        fields=("velocity",),
+        about="Joint velocities that the crane was told to follow in the step that ends now [rad/s, m/s].",
+    ),
+    Topic(
+        name="/winch/joint_states",
+        type=JOINTS,
+        publisher="payload",
+        rate="telemetry",
+        frame="crane_tip",
+        joints=("winch",),
+        about="Wire paid out [m], its rate [m/s], largest line pull in the step that ends now [N].",
+    ),
+    Topic(
+        name="/winch/joint_command_applied",
+        type=JOINTS,
+        publisher="payload",
+        rate="telemetry",
+        frame="crane_tip",
+        joints=("winch",),
+        fields=("velocity",),
+        about="Pay-out speed that the winch was told to follow in the step that ends now [m/s].",
+    ),
+    Topic(
+        name="/crane/joint_command",
+        type=JOINTS,
+        publisher="operator",
+        rate="irregular",
+        joints=COMMAND_JOINTS,
+        fields=("velocity",),
+        about="Velocity wanted of the named joints, held until the next message [rad/s, m/s].",
+    ),
+    Topic(
+        name="/diagnostics",
+        type=DIAGNOSTICS,
+        publisher="clock",
+        rate="irregular",
+        about="State of the lockstep once per wall-clock second: time, real-time factor, worst step, who is silent.",
+    ),
+)
+
+BY_NAME = {topic.name: topic for topic in TOPICS}
+
+
+def published_by(name: str) -> tuple[Topic, ...]:
+    """Return the topics of one publisher, in table order."""
+    return tuple(topic for topic in TOPICS if topic.publisher == name)

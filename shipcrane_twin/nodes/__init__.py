@@ -1,0 +1,1 @@
+"""One executable per module: thin shells around a subsystem."""

@@ -1,0 +1,1 @@
+"""Models of sea, ship, crane, wire and load as kernels over plain arrays: no ROS, no files."""

@@ -1,0 +1,129 @@
+"""Links of a crane placed in crane_base: the arrays that dynamics and inertia are computed from."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, place_frames
+
+
+class ChainWork(NamedTuple):
+    """Scratch arrays of one evaluation, allocated once per macro step; see `new_work`.
+
+    Attributes
+    ----------
+    rotation_b : float64, shape (n + 1, 3, 3)
+        Frames of the links and of the tip; columns are their axes in base axes.
+    origin_b : float64, shape (n + 1, 3)
+        Origins of these frames [m].
+    cog_b : float64, shape (n, 3)
+        Link centres of gravity from the base origin [m].
+    inertia_b : float64, shape (n, 6)
+        xx, xy, xz, yy, yz, zz about the link's own centre, in base axes [kg m2].
+    screw_b : float64, shape (n, 6)
+        Velocity of the material point at the base origin (3) and angular velocity (3) that a unit
+        rate of the joint gives to everything outboard of it.
+    momentum_b : float64, shape (n, 6)
+        Linear (3) and angular momentum about the base origin (3) per unit rate of the joint.
+    wrench_b : float64, shape (n, 6)
+        Force (3) and moment about the base origin (3) that the links from i outward need while all
+        joint accelerations are zero, tip force deducted.
+    mass_matrix : float64, shape (n, n)
+        Joint-space mass matrix.
+    bias : float64, shape (n,)
+        Joint efforts needed at zero joint acceleration.
+    """
+
+    rotation_b: Array
+    origin_b: Array
+    cog_b: Array
+    inertia_b: Array
+    screw_b: Array
+    momentum_b: Array
+    wrench_b: Array
+    mass_matrix: Array
+    bias: Array
+
+
+@njit(cache=True)
+def new_work(joints: int) -> ChainWork:
+    """Return zeroed scratch arrays for a chain of that many joints."""
+    return ChainWork(
+        np.zeros((joints + 1, 3, 3)),
+        np.zeros((joints + 1, 3)),
+        np.zeros((joints, 3)),
+        np.zeros((joints, 6)),
+        np.zeros((joints, 6)),
+        np.zeros((joints, 6)),
+        np.zeros((joints, 6)),
+        np.zeros((joints, joints)),
+        np.zeros(joints),
+    )
+
+
+@njit(cache=True)
+def place_links(chain: ChainParams, q: Array, work: ChainWork) -> None:
+    """Fill frames, centres of gravity, inertias and joint screws of `work` for the pose q (n,)."""
+    place_frames(chain, q, work.rotation_b, work.origin_b)
+    for i in range(chain.kind.shape[0]):
+        c0, c1, c2 = chain.cog[i, 0], chain.cog[i, 1], chain.cog[i, 2]
+        for k in range(3):
+            work.cog_b[i, k] = (
+                work.origin_b[i, k]
+                + work.rotation_b[i, k, 0] * c0
+                + work.rotation_b[i, k, 1] * c1
+                + work.rotation_b[i, k, 2] * c2
+            )
+        _turn_inertia(work.rotation_b, chain.inertia, work.inertia_b, i)
+        zx, zy, zz = work.rotation_b[i, 0, 2], work.rotation_b[i, 1, 2], work.rotation_b[i, 2, 2]
+        if chain.kind[i] == REVOLUTE:
+            ux, uy, uz = cross(work.origin_b[i, 0], work.origin_b[i, 1], work.origin_b[i, 2], zx, zy, zz)
+            store_row(work.screw_b, i, ux, uy, uz, zx, zy, zz)
+        else:
+            store_row(work.screw_b, i, zx, zy, zz, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True)
+def store_row(rows: Array, i: int, a: float, b: float, c: float, d: float, e: float, f: float) -> None:
+    """Write row i of an (n, 6) array; a view of the row would cost reference counting."""
+    rows[i, 0] = a
+    rows[i, 1] = b
+    rows[i, 2] = c
+    rows[i, 3] = d
+    rows[i, 4] = e
+    rows[i, 5] = f
+
+
+@njit(cache=True)
+def project_row(rows: Array, i: int, a: float, b: float, c: float, d: float, e: float, f: float) -> float:
+    """Return the product of row i of an (n, 6) array with six numbers: a joint's share of a wrench."""
+    return rows[i, 0] * a + rows[i, 1] * b + rows[i, 2] * c + rows[i, 3] * d + rows[i, 4] * e + rows[i, 5] * f
+
+
+@njit(cache=True)
+def _turn_inertia(rotation: Array, tensor: Array, out: Array, i: int) -> None:
+    """Write R J R^T of link i as xx, xy, xz, yy, yz, zz."""
+    jxx, jxy, jxz = tensor[i, 0, 0], tensor[i, 0, 1], tensor[i, 0, 2]
+    jyy, jyz, jzz = tensor[i, 1, 1], tensor[i, 1, 2], tensor[i, 2, 2]
+    ax, ay, az = rotation[i, 0, 0], rotation[i, 0, 1], rotation[i, 0, 2]
+    bx, by, bz = rotation[i, 1, 0], rotation[i, 1, 1], rotation[i, 1, 2]
+    cx, cy, cz = rotation[i, 2, 0], rotation[i, 2, 1], rotation[i, 2, 2]
+    px = jxx * ax + jxy * ay + jxz * az
+    py = jxy * ax + jyy * ay + jyz * az
+    pz = jxz * ax + jyz * ay + jzz * az
+    qx = jxx * bx + jxy * by + jxz * bz
+    qy = jxy * bx + jyy * by + jyz * bz
+    qz = jxz * bx + jyz * by + jzz * bz
+    rx = jxx * cx + jxy * cy + jxz * cz
+    ry = jxy * cx + jyy * cy + jyz * cz
+    rz = jxz * cx + jyz * cy + jzz * cz
+    xx = px * ax + py * ay + pz * az
+    xy = px * bx + py * by + pz * bz
+    xz = px * cx + py * cy + pz * cz
+    yy = qx * bx + qy * by + qz * bz
+    yz = qx * cx + qy * cy + qz * cz
+    store_row(out, i, xx, xy, xz, yy, yz, rx * cx + ry * cy + rz * cz)

@@ -1,0 +1,157 @@
+"""Loads of the water on the hull: restoring, added mass, damping and current.
+
+This is the simple hull: constant (infinite-frequency) added mass and damping constant at the
+value of each mode's natural period. All matrices are about the ship's CoG in FLU axes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.frames import cross
+
+
+class HullParams(NamedTuple):
+    """Hydrodynamic coefficients of the hull, about the CoG, FLU.
+
+    Attributes
+    ----------
+    added_mass, damping, restoring : float64, shape (6, 6)
+        Order surge, sway, heave, roll, pitch, yaw [kg, kg m, kg m2], [N s/m, ...], [N/m, N, N m/rad].
+    quadratic : float64, shape (2,)
+        Roll and yaw moments per squared rate [N m s2/rad2].
+    current_table : float64, shape (n, 4)
+        Direction the water goes to relative to the bow, 0 (from astern) to pi [rad]; coefficients of
+        surge, sway and yaw in FRD, uniform spacing.
+    current_scale : float64, shape (3,)
+        ``0.5 rho A`` of surge and sway, ``0.5 rho A L`` of yaw.
+    design_height : float
+        Height of the CoG above still water at the design condition [m].
+    """
+
+    added_mass: Array
+    damping: Array
+    restoring: Array
+    quadratic: Array
+    current_table: Array
+    current_scale: Array
+    design_height: float
+
+
+@njit(cache=True)
+def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -> tuple[float, Array]:
+    """Return the hydrostatic load: weight and buoyancy of the ship together.
+
+    Parameters
+    ----------
+    hull : HullParams
+    height : float
+        Height of the CoG above still water [m].
+    roll, pitch : float
+        z-y-x Euler angles, FLU [rad].
+
+    Returns
+    -------
+    float, float64 (3,)
+        Vertical force [N, world up] and moment about the CoG [N m, body axes].
+
+    Notes
+    -----
+    Gradient of ``V = (C33 z^2 + 2 C35 z pitch + C44 roll^2 + C55 pitch^2) / 2``: linear in the Euler
+    angles, conservative at any attitude. The moment has no component about the world's vertical.
+    """
+    rise = height - hull.design_height
+    c = hull.restoring
+    force_up = -c[2, 2] * rise - c[2, 4] * pitch
+    roll_load = -c[3, 3] * roll
+    pitch_load = -c[4, 2] * rise - c[4, 4] * pitch
+    sr, cr, tp = np.sin(roll), np.cos(roll), np.tan(pitch)
+    moment_b = np.array(
+        [
+            roll_load,
+            cr * pitch_load + sr * tp * roll_load,
+            -sr * pitch_load + cr * tp * roll_load,
+        ]
+    )
+    return force_up, moment_b
+
+
+@njit(cache=True)
+def current_load(hull: HullParams, flow_x: float, flow_y: float) -> Array:
+    """Return surge force, sway force and yaw moment (3,) [N, N, N m; FLU] of steady flow past the hull.
+
+    Parameters
+    ----------
+    hull : HullParams
+    flow_x, flow_y : float
+        Velocity of the water relative to the hull along forward and port [m/s].
+
+    Notes
+    -----
+    Quadratic drag with coefficients by flow direction, port-starboard symmetric. The yaw
+    coefficients are fitted to the whole moment, so they hold the Munk moment already.
+    """
+    table = hull.current_table
+    angle = np.arctan2(-flow_y, flow_x)  # clockwise from the bow, as the table has it
+    side = 1.0 if angle >= 0.0 else -1.0
+    place = abs(angle) / np.pi * (table.shape[0] - 1)
+    row = min(int(place), table.shape[0] - 2)
+    part = place - row
+    speed2 = flow_x * flow_x + flow_y * flow_y
+    load = np.empty(3)
+    for i in range(3):
+        coefficient = (1.0 - part) * table[row, i + 1] + part * table[row + 1, i + 1]
+        load[i] = hull.current_scale[i] * coefficient * speed2
+    load[1] *= -side  # FRD to FLU
+    load[2] *= -side
+    return load
+
+
+@njit(cache=True)
+def damping_load(hull: HullParams, nu_rel_b: Array) -> Array:
+    """Return the damping load (6,) about the CoG for the velocity (6,) relative to the water, body axes."""
+    load = np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            load[i] -= hull.damping[i, j] * nu_rel_b[j]
+    drag = current_load(hull, -nu_rel_b[0], -nu_rel_b[1])
+    load[0] += drag[0]
+    load[1] += drag[1]
+    load[3] -= hull.quadratic[0] * nu_rel_b[3] * abs(nu_rel_b[3])
+    load[5] += drag[2] - hull.quadratic[1] * nu_rel_b[5] * abs(nu_rel_b[5])
+    return load
+
+
+@njit(cache=True)
+def added_mass_bias(hull: HullParams, nu_rel_b: Array, water_b: Array) -> Array:
+    """Return the velocity-dependent added-mass load (6,) that stands beside ``added_mass @ nu_dot``.
+
+    Parameters
+    ----------
+    hull : HullParams
+    nu_rel_b : float64, shape (6,)
+        Velocity relative to the water, body axes.
+    water_b : float64, shape (3,)
+        Velocity of the water, constant in the world, body axes [m/s].
+
+    Notes
+    -----
+    Kirchhoff's equations (Fossen 2011, section 6.3.1) without the Munk term ``v x p``, which the
+    current coefficients contain. Water that is steady in the world turns in body axes, so the
+    relative acceleration is ``nu_dot + omega x water_b``.
+    """
+    omega = nu_rel_b[3:]
+    relative = np.zeros(6)
+    turning = cross(omega, water_b)
+    momentum = np.zeros(6)
+    for i in range(6):
+        for j in range(3):
+            relative[i] += hull.added_mass[i, j] * turning[j]
+        for j in range(6):
+            momentum[i] += hull.added_mass[i, j] * nu_rel_b[j]
+    load = np.empty(6)
+    load[:3] = -relative[:3] - cross(omega, momentum[:3])
+    load[3:] = -relative[3:] - cross(omega, momentum[3:])
+    return load

@@ -1,0 +1,238 @@
+"""The ship as a rigid body in six degrees of freedom, with the crane's inertia bolted to it.
+
+State, float64 (13,): position of the CoG in the world (3), quaternion body to world (4), velocity
+of the CoG (3) and angular velocity (3), both in body axes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.frames import (
+    cross,
+    euler_from_matrix,
+    matrix_from_quat,
+    quat_rate,
+    rotate_to_body,
+    rotate_to_world,
+)
+from shipcrane_twin.physics.hull import HullParams, added_mass_bias, damping_load, restoring_load
+from shipcrane_twin.physics.linalg import solve_spd
+
+
+class VesselParams(NamedTuple):
+    """Constants of the ship.
+
+    Attributes
+    ----------
+    rigid_mass : float64, shape (6, 6)
+        Rigid-body inertia about the CoG.
+    hull : HullParams
+    cog : float64, shape (3,)
+        CoG in base_link [m].
+    crane_base : float64, shape (3,)
+        Origin of crane_base in base_link [m]; its axes are parallel to base_link.
+    gravity : float
+        [m/s2].
+    """
+
+    rigid_mass: Array
+    hull: HullParams
+    cog: Array
+    crane_base: Array
+    gravity: float
+
+
+@njit(cache=True)
+def attached_inertia(body: Array, offset: Array) -> Array:
+    """Return the inertia (6, 6) about a reference point of a rigid body given at another point.
+
+    Parameters
+    ----------
+    body : float64, shape (10,)
+        Mass, CoM (3) from the other point, inertia xx xy xz yy yz zz about the CoM; common axes.
+    offset : float64, shape (3,)
+        The other point seen from the reference point [m].
+    """
+    mass = body[0]
+    x, y, z = body[1] + offset[0], body[2] + offset[1], body[3] + offset[2]
+    out = np.zeros((6, 6))
+    for i in range(3):
+        out[i, i] = mass
+    out[0, 4], out[0, 5] = mass * z, -mass * y
+    out[1, 3], out[1, 5] = -mass * z, mass * x
+    out[2, 3], out[2, 4] = mass * y, -mass * x
+    for i in range(3):
+        for j in range(3, 6):
+            out[j, i] = out[i, j]
+    out[3, 3] = body[4] + mass * (y * y + z * z)
+    out[3, 4] = body[5] - mass * x * y
+    out[3, 5] = body[6] - mass * x * z
+    out[4, 4] = body[7] + mass * (x * x + z * z)
+    out[4, 5] = body[8] - mass * y * z
+    out[5, 5] = body[9] + mass * (x * x + y * y)
+    out[4, 3], out[5, 3], out[5, 4] = out[3, 4], out[3, 5], out[4, 5]
+    return out
+
+
+@njit(cache=True)
+def momentum_bias(mass6: Array, nu_b: Array) -> Array:
+    """Return ``C(nu) nu`` (6,) of a rigid body with inertia (6, 6) moving with nu (6,), body axes."""
+    momentum = np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            momentum[i] += mass6[i, j] * nu_b[j]
+    bias = np.empty(6)
+    bias[:3] = cross(nu_b[3:], momentum[:3])
+    bias[3:] = cross(nu_b[3:], momentum[3:]) + cross(nu_b[:3], momentum[:3])
+    return bias
+
+
+@njit(cache=True)
+def state_rate(params: VesselParams, state: Array, load_b: Array, water_w: Array, attached: Array) -> Array:
+    """Return d(state)/dt (13,).
+
+    Parameters
+    ----------
+    params : VesselParams
+    state : float64, shape (13,)
+    load_b : float64, shape (6,)
+        Outer force and moment about the CoG, body axes [N, N m].
+    water_w : float64, shape (3,)
+        Current, world [m/s].
+    attached : float64, shape (10,)
+        Rigid body carried along at crane_base: its inertia and its weight are added here.
+
+    Notes
+    -----
+    ``(M_RB + M_attached + A) nu_dot = load + weight + restoring + damping - C(nu) nu - C_A(nu_r) nu_r``
+    (Fossen 2011, equation 7.2, about the CoG).
+    """
+    quat = state[3:7]
+    nu_b = state[7:13]
+    rot = matrix_from_quat(quat)
+    roll, pitch, _ = euler_from_matrix(rot)
+    hull = params.hull
+    offset = params.crane_base - params.cog
+    mass6 = params.rigid_mass + attached_inertia(attached, offset)
+
+    water_b = rotate_to_body(rot, water_w)
+    nu_rel_b = nu_b.copy()
+    nu_rel_b[:3] -= water_b
+
+    total = load_b - momentum_bias(mass6, nu_b)
+    total += damping_load(hull, nu_rel_b)
+    total += added_mass_bias(hull, nu_rel_b, water_b)
+
+    force_up, moment_b = restoring_load(hull, state[2], roll, pitch)
+    up_b = rot[2]
+    weight_b = (-attached[0] * params.gravity) * up_b
+    total[:3] += force_up * up_b + weight_b
+    total[3:] += moment_b + cross(attached[1:4] + offset, weight_b)
+
+    rate = np.empty(13)
+    rate[:3] = rotate_to_world(rot, nu_b[:3])
+    rate[3:7] = quat_rate(quat, nu_b[3:])
+    rate[7:] = solve_spd(mass6 + hull.added_mass, total)
+    return rate
+
+
+@njit(cache=True)
+def vessel_step(
+    params: VesselParams, state: Array, load_b: Array, water_w: Array, attached: Array, step_s: float
+) -> Array:
+    """Return the state (13,) one classical Runge-Kutta step later; loads are held over the step."""
+    k1 = state_rate(params, state, load_b, water_w, attached)
+    k2 = state_rate(params, state + 0.5 * step_s * k1, load_b, water_w, attached)
+    k3 = state_rate(params, state + 0.5 * step_s * k2, load_b, water_w, attached)
+    k4 = state_rate(params, state + step_s * k3, load_b, water_w, attached)
+    new = state + (step_s / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    new[3:7] /= np.sqrt(new[3] ** 2 + new[4] ** 2 + new[5] ** 2 + new[6] ** 2)
+    return new
+
+
+@njit(cache=True)
+def point_motion(state: Array, nu_dot_b: Array, arm_b: Array) -> tuple[Array, Array, Array]:
+    """Return world position, velocity and acceleration (body axes) of a point fixed in the ship.
+
+    Parameters
+    ----------
+    state : float64, shape (13,)
+    nu_dot_b : float64, shape (6,)
+        Rates of the body-axes velocities at the CoG.
+    arm_b : float64, shape (3,)
+        The point seen from the CoG, body axes [m].
+
+    Returns
+    -------
+    pos_w, vel_b, acc_b : float64, shape (3,)
+        The acceleration is that of the point in the world (no gravity), resolved in body axes.
+    """
+    rot = matrix_from_quat(state[3:7])
+    vel, omega = state[7:10], state[10:13]
+    pos_w = state[:3] + rotate_to_world(rot, arm_b)
+    vel_b = vel + cross(omega, arm_b)
+    acc_b = nu_dot_b[:3] + cross(omega, vel) + cross(nu_dot_b[3:], arm_b) + cross(omega, cross(omega, arm_b))
+    return pos_w, vel_b, acc_b
+
+
+@njit(cache=True)
+def carried_load(attached: Array, omega_b: Array, alpha_b: Array, proper_acc_b: Array) -> Array:
+    """Return force and moment (6,) of a rigidly carried body on its carrier, at the point of attachment.
+
+    Parameters
+    ----------
+    attached : float64, shape (10,)
+        Mass, CoM (3) from the point, inertia about the CoM.
+    omega_b, alpha_b : float64, shape (3,)
+        Angular velocity and acceleration, body axes.
+    proper_acc_b : float64, shape (3,)
+        Acceleration of the point minus gravity, body axes [m/s2].
+    """
+    com = attached[1:4]
+    acc_com = proper_acc_b + cross(alpha_b, com) + cross(omega_b, cross(omega_b, com))
+    force = -attached[0] * acc_com
+    tensor = np.array(
+        [
+            [attached[4], attached[5], attached[6]],
+            [attached[5], attached[7], attached[8]],
+            [attached[6], attached[8], attached[9]],
+        ]
+    )
+    moment = -(rotate_to_world(tensor, alpha_b) + cross(omega_b, rotate_to_world(tensor, omega_b)))
+    out = np.empty(6)
+    out[:3] = force
+    out[3:] = moment + cross(com, force)
+    return out
+
+
+@njit(cache=True)
+def carried_mean(
+    params: VesselParams, attached: Array, start: Array, start_rate: Array, end: Array, end_rate: Array
+) -> Array:
+    """Return the mean over a step (trapezium) of the load (6,) of a body carried at crane_base.
+
+    Parameters
+    ----------
+    params : VesselParams
+    attached : float64, shape (10,)
+        The body, see `carried_load`.
+    start, end : float64, shape (13,)
+        Ship states at both ends of the step.
+    start_rate, end_rate : float64, shape (6,)
+        ``nu_dot`` at both ends.
+
+    Returns
+    -------
+    float64, shape (6,)
+        Force and moment on the ship at crane_base's origin, body axes, weight included.
+    """
+    arm = params.crane_base - params.cog
+    total = np.zeros(6)
+    for state, rate in ((start, start_rate), (end, end_rate)):
+        acc_b = point_motion(state, rate, arm)[2]
+        proper_b = acc_b + params.gravity * matrix_from_quat(state[3:7])[2]
+        total += 0.5 * carried_load(attached, state[10:], rate[3:], proper_b)
+    return total

@@ -1,0 +1,1 @@
+"""Recordings: write and read rosbag2 directories."""

@@ -1,0 +1,79 @@
+"""The Palfinger crane and a six-joint stranger, for tests; numbers from the reference data of the crane."""
+
+from math import atan, hypot, pi
+
+import numpy as np
+
+from shipcrane_twin.physics.crane_chain import ChainParams, make_chain
+from shipcrane_twin.physics.crane_cylinders import DriveParams, LinearDrive, TriangleDrive, make_drives
+from shipcrane_twin.physics.crane_reference import MotionLimits, make_limits
+
+GRAVITY = 9.80665
+UP = np.array([0.0, 0.0, GRAVITY])  # proper acceleration of a base at rest
+WORK_POSE = np.array([-pi / 2, 0.5, 0.9, 2.0])
+
+
+def palfinger_chain() -> ChainParams:
+    return make_chain(
+        dh=[
+            [0.0, 0.0, 2.0, 0.0],
+            [-0.38, pi / 2, 0.0, 0.0],
+            [1.85, 0.0, -0.6, 0.0],
+            [0.0, pi / 2, 0.0, 0.0],
+            [-0.5, 0.0, 2.0, 0.0],
+        ],
+        kind=["revolute", "revolute", "revolute", "prismatic"],
+        mass=[1524.0, 2236.0, 1264.0, 1000.0],
+        cog=[[0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [-0.5, -1.0, 0.0], [-0.5, 0.0, 1.0]],
+        inertia=[
+            np.diag(diagonal)
+            for diagonal in (
+                [1178.0, 1265.0, 328.0],
+                [371.0, 7971.0, 7995.0],
+                [3114.0, 129.0, 3162.0],
+                [3000.0, 3000.0, 100.0],
+            )
+        ],
+    )
+
+
+def palfinger_drives() -> DriveParams:
+    return make_drives(
+        [
+            LinearDrive(),
+            TriangleDrive(hypot(1.4, 0.5), 0.5, atan(0.5 / 1.4) - pi / 2, 1.1, 1.8),
+            TriangleDrive(1.55, hypot(0.34, 0.36), -atan(0.36 / 0.34) - atan(0.4 / 1.55), 1.2, 1.9),
+            LinearDrive(offset=-1.5, length_min=1.5, length_max=11.5),
+        ]
+    )
+
+
+def palfinger_limits(sag=None) -> MotionLimits:
+    return make_limits(
+        palfinger_drives(),
+        length_rate_max=[0.05, 0.01, 0.01, 0.05],
+        accel_max=[0.025, 0.02, 0.02, 0.05],
+        end_margin=0.01,
+        sag=sag,
+    )
+
+
+def mixed_chain() -> ChainParams:
+    """Six mixed joints, skew axes, full inertia tensors, a turned tip: nothing cancels by symmetry."""
+    rng = np.random.default_rng(11)
+    rows = np.column_stack(
+        (
+            rng.uniform(-1.0, 1.0, 7),
+            rng.uniform(-pi, pi, 7),
+            rng.uniform(-1.0, 1.0, 7),
+            rng.uniform(-pi, pi, 7),
+        )
+    )
+    kind = ["prismatic", "revolute", "revolute", "prismatic", "revolute", "revolute"]
+    tensors = []
+    for _ in kind:
+        points = rng.normal(size=(8, 3))  # a cloud of point masses is a possible body
+        tensors.append(30.0 * (np.sum(points**2) * np.eye(3) - points.T @ points))
+    return make_chain(
+        dh=rows, kind=kind, mass=rng.uniform(50.0, 900.0, 6), cog=rng.normal(size=(6, 3)), inertia=tensors
+    )
