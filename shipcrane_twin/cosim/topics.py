@@ -232,6 +232,13 @@ TOPICS: tuple[Topic, ...] = (
         about="Velocity wanted of the named joints, held until the next message [rad/s, m/s].",
     ),
     Topic(
+        name="/recorder/progress",
+        type=CLOCK,
+        publisher="recorder",
+        rate="irregular",
+        about="Simulated time up to which the bag holds everything; the clock never runs far ahead of it.",
+    ),
+    Topic(
         name="/diagnostics",
         type=DIAGNOSTICS,
         publisher="clock",

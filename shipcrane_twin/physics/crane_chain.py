@@ -121,9 +121,7 @@ def _check_inertia(tensor: Array, link: int) -> None:
 
 
 @njit(cache=True)
-def cross(
-    ax: float, ay: float, az: float, bx: float, by: float, bz: float
-) -> tuple[float, float, float]:
+def cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> tuple[float, float, float]:
     """Return the cross product a x b as three floats: no arrays, so nothing is allocated."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
@@ -231,9 +229,7 @@ def fill_tip(chain: ChainParams, qd: Array, rotation_b: Array, origin_b: Array, 
         zx, zy, zz = rotation_b[i, 0, 2] * qd[i], rotation_b[i, 1, 2] * qd[i], rotation_b[i, 2, 2] * qd[i]
         if chain.kind[i] == REVOLUTE:
             wx, wy, wz = wx + zx, wy + zy, wz + zz
-            zx, zy, zz = cross(
-                zx, zy, zz, px - origin_b[i, 0], py - origin_b[i, 1], pz - origin_b[i, 2]
-            )
+            zx, zy, zz = cross(zx, zy, zz, px - origin_b[i, 0], py - origin_b[i, 1], pz - origin_b[i, 2])
         vx, vy, vz = vx + zx, vy + zy, vz + zz
     tip_b[0], tip_b[1], tip_b[2] = px, py, pz
     tip_b[3], tip_b[4], tip_b[5] = vx, vy, vz

@@ -1,7 +1,7 @@
 """CDR messages to arrays: a column decoder for stacks of equal messages and a generic one for the rest.
 
-CDR as ROS 2 writes it: 4 bytes of encapsulation, then little-endian fields, each aligned to its own size counted
-from byte 4. Strings and sequences begin with a uint32 length (strings count their closing NUL).
+CDR as ROS 2 writes it: 4 bytes of encapsulation, then little-endian fields, each aligned to its own size
+counted from byte 4. Strings and sequences begin with a uint32 length (strings count their closing NUL).
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ class Block:
 
 @dataclass(slots=True)
 class _Walk:
-    """Position in one message; collects which bytes must be equal in all messages and where the numbers lie."""
+    """Position in one message; collects which bytes must not differ and where the numbers lie."""
 
     data: bytes
     at: int = 4
@@ -206,7 +206,7 @@ def _nanoseconds(stamp: Any) -> int:
 
 
 def _joint_block(message: Any) -> Block:
-    """Return one JointState as a block of one row; a joint named twice counts once, with its first numbers."""
+    """Return one JointState as a block of one row; of a joint named twice the first numbers count."""
     names = tuple(dict.fromkeys(message.name))
     values = np.full((3, len(names)), np.nan)
     for row, array in enumerate((message.position, message.velocity, message.effort)):

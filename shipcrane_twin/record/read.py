@@ -4,9 +4,11 @@ The bag is a rosbag2 directory (``metadata.yaml`` and MCAP files). Records and c
 mcap package; the messages of one topic normally have the same length, the same strings and the same array
 sizes, so they are stacked and sliced as columns, and only what does not fit goes through the generic decoder.
 
-Column order of `Series.values` by type (`COLUMNS`): Odometry px py pz qx qy qz qw vx vy vz wx wy wz; PoseStamped
-px py pz qx qy qz qw; TwistStamped vx vy vz wx wy wz; AccelStamped ax ay az alx aly alz; WrenchStamped fx fy fz mx
-my mz; InertiaStamped m comx comy comz ixx ixy ixz iyy iyz izz; Clock none. SI units, frames as in the header.
+Column order of `Series.values` by type (`COLUMNS`), SI units, frames as in the header:
+
+- Odometry px py pz qx qy qz qw vx vy vz wx wy wz; PoseStamped px py pz qx qy qz qw;
+- TwistStamped vx vy vz wx wy wz; AccelStamped ax ay az alx aly alz; WrenchStamped fx fy fz mx my mz;
+- InertiaStamped m comx comy comz ixx ixy ixz iyy iyz izz; Clock none.
 """
 
 from __future__ import annotations
@@ -58,7 +60,7 @@ class Series:
     @property
     def time_s(self) -> NDArray[np.float64]:
         """Stamps in seconds, float64, shape (n,)."""
-        return self.stamp_ns * 1e-9
+        return self.stamp_ns.astype(np.float64) * 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +82,7 @@ class Joints:
     @property
     def time_s(self) -> NDArray[np.float64]:
         """Stamps in seconds, float64, shape (n,)."""
-        return self.stamp_ns * 1e-9
+        return self.stamp_ns.astype(np.float64) * 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,8 +189,10 @@ def _metadata(path: Path) -> dict[str, Any]:
         what = "is a file" if path.exists() else "does not exist"
         raise BagError(f"{path}: no bag there ({what}); give the directory that holds metadata.yaml")
     if not file.is_file():
-        hint = f"did you mean {path / 'bag'}?" if (path / "bag" / "metadata.yaml").is_file() else (
-            "a recording that was killed can be mended with 'ros2 bag reindex'"
+        hint = (
+            f"did you mean {path / 'bag'}?"
+            if (path / "bag" / "metadata.yaml").is_file()
+            else ("a recording that was killed can be mended with 'ros2 bag reindex'")
         )
         raise BagError(f"{path}: not a bag, metadata.yaml is missing; {hint}")
     try:

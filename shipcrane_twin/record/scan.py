@@ -1,7 +1,7 @@
 """Walk an MCAP file: which bytes of which chunk are messages of which topic, and is the file whole.
 
-The mcap package parses the records and opens the chunks; only the walk over the messages is done here, because
-one Python object per message would cost more than everything else together.
+The mcap package parses the records and opens the chunks; only the walk over the messages is done here,
+because one Python object per message would cost more than everything else together.
 """
 
 from __future__ import annotations
@@ -27,8 +27,15 @@ _RECORD = struct.Struct("<BQ")  # opcode, length of the content
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
 # What the parsers and decompressors raise on damaged bytes.
 _DAMAGE = (
-    McapError, ValueError, LookupError, RuntimeError, MemoryError, OverflowError, struct.error, zstandard.ZstdError
-)  # fmt: skip
+    McapError,
+    ValueError,
+    LookupError,
+    RuntimeError,
+    MemoryError,
+    OverflowError,
+    struct.error,
+    zstandard.ZstdError,
+)
 
 
 class BagError(ValueError):
@@ -39,8 +46,8 @@ class BagError(ValueError):
 class Batch:
     """Messages of one topic in one chunk; empty where a topic is only announced.
 
-    `data` holds the chunk's bytes (uint8), message k is ``data[starts[k] : starts[k] + sizes[k]]`` and was logged
-    at ``log_ns[k]`` [ns]; `where` names the chunk for errors.
+    `data` holds the chunk's bytes (uint8), message k is ``data[starts[k] : starts[k] + sizes[k]]`` and was
+    logged at ``log_ns[k]`` [ns]; `where` names the chunk for errors.
     """
 
     topic: str
@@ -86,7 +93,7 @@ def _damaged(file: Path, where: str, error: BaseException) -> BagError:
 
 
 def _regions(whole: mmap.mmap, file: Path) -> Iterator[tuple[bytes, str]]:
-    """Yield the content of every chunk, and the schema, channel and message records that lie outside chunks."""
+    """Yield the content of every chunk, and the schema, channel and message records outside chunks."""
     at, size = len(_MAGIC), len(whole)
     opcode = -1
     while opcode != Opcode.FOOTER:
@@ -94,8 +101,8 @@ def _regions(whole: mmap.mmap, file: Path) -> Iterator[tuple[bytes, str]]:
         end = head + (_RECORD.unpack_from(whole, at)[1] if head <= size else 0)
         if end > size - len(_MAGIC):
             raise BagError(
-                f"{file}: cut short, the record at byte {at} needs {end + len(_MAGIC) - size} bytes more than the "
-                f"file's {size}; 'mcap recover' saves the part before it, or record again"
+                f"{file}: cut short, the record at byte {at} needs {end + len(_MAGIC) - size} bytes more "
+                f"than the file's {size}; 'mcap recover' saves the part before it, or record again"
             )
         opcode, where = whole[at], f"the record at byte {at}"
         if opcode == Opcode.CHUNK:
@@ -111,7 +118,7 @@ def _regions(whole: mmap.mmap, file: Path) -> Iterator[tuple[bytes, str]]:
             yield whole[at:end], where
         at = end
     if whole[at:] != _MAGIC:
-        raise BagError(f"{file}: {size - at} odd bytes after the footer; rebuild the file with 'mcap recover'")
+        raise BagError(f"{file}: odd bytes behind the footer; rebuild the file with 'mcap recover'")
 
 
 def _batches(

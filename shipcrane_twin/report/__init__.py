@@ -1,0 +1,1 @@
+"""Figures, numbers and the page of a run, made from its bag."""

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from io import BytesIO
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from shipcrane_twin.record.read import Signals
@@ -42,6 +41,5 @@ def make_figures(signals: Signals, scenario: Mapping[str, Any]) -> list[Plot]:
 def png_bytes(figure: Figure) -> bytes:
     """Return the figure as PNG; equal figures give equal bytes."""
     buffer = BytesIO()
-    figure.set_dpi(DPI)
-    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None}, pil_kwargs={"compress_level": 6})
+    figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
     return buffer.getvalue()

@@ -68,12 +68,11 @@ def positions(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     style.mark_operations([[row[k] for row in grid] for k in (0, 1)], style.operations_of(scenario))
     apart_m = float(np.hypot(offset[:, 0], offset[:, 1]).max())
     angle = float(sway_angle_deg(offset).max())
+    seen = "nearly coincide" if apart_m <= 0.5 else "part"
     caption = (
-        f"Tip and payload nearly coincide in north and east: at most {apart_m:.2f} m apart, the load up to "
-        f"{angle:.1f} deg from the plumb line below the tip; the down axes point down."
+        f"Tip and payload {seen} in north and east: at most {apart_m:.2f} m apart, the wire up to "
+        f"{angle:.1f} deg from the vertical (the axes of down point downwards)."
     )
-    if apart_m > 0.5:
-        caption = caption.replace("nearly coincide in north and east", "part in north and east")
     return Plot("tip_payload", "Crane tip and payload", caption, figure)
 
 
@@ -92,7 +91,7 @@ def wire(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
         style.finish(grid[1][0], "paid-out length,\nunstretched [m]", 0.5)
     style.mark_operations([[row[0] for row in grid]], style.operations_of(scenario))
     values = tension[1]
-    caption = f"The wire carries {np.median(values):.2f} kN at the median and {values.max():.2f} kN at the most."
+    caption = f"The wire carries {np.median(values):.2f} kN (median), {values.max():.2f} kN at the most."
     slack_s = float(np.count_nonzero(values <= 0.0)) / len(values) * float(tension[0][-1] - tension[0][0])
     if slack_s > 0.0:
         caption = caption[:-1] + f"; it is slack for {slack_s:.1f} s."
@@ -124,7 +123,7 @@ def base_wrench(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
         style.legend(axes)
     style.mark_operations([[across, upright, moment]], style.operations_of(scenario))
     caption = (
-        f"The crane and its load press on the deck with {-kilo[:, 2].mean():.1f} kN on average and heel it with "
-        f"{kilo[:, 3].min():.0f} to {kilo[:, 3].max():.0f} kN m (positive starboard down; axes of the ship)."
+        f"The crane and its load press on the deck with {-kilo[:, 2].mean():.1f} kN on average and "
+        f"heel it with {kilo[:, 3].min():.0f} to {kilo[:, 3].max():.0f} kN m (positive starboard down)."
     )
     return Plot("base_wrench", "Load of the crane on the ship", caption, figure)

@@ -37,10 +37,8 @@ def motions(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     if operations and operations[0].from_s <= motion.time_s[-1]:
         before = np.searchsorted(motion.time_s, operations[0].from_s)
         caption += f" and was {motion.roll_deg[before]:.2f} deg when the operations began"
-    return Plot(
-        "motions", "Ship motions", caption + ": it follows the moment of the crane and its load about the keel line.",
-        figure,
-    )  # fmt: skip
+    caption += "; it follows the moment of the crane and its load."
+    return Plot("motions", "Ship motions", caption, figure)
 
 
 def track(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
@@ -58,14 +56,14 @@ def track(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     wanted = float(goal["heading_deg"])
     style.line(heading, motion.time_s, continuous_deg(motion.heading_deg, wanted), style.BLUE, "ship")
     heading.axhline(wanted, color=style.VERMILLION, linewidth=1.2, linestyle="--", label="set-point")
-    style.finish(heading, "heading, clockwise\nfrom north [deg]", 1.0)
+    style.finish(heading, "heading, clockwise\nfrom north [deg]", 0.2)
     style.legend(heading)
     heading.tick_params(labelbottom=False)
 
     distance = position_error_m(motion, goal["north_m"], goal["east_m"])
     style.line(error, motion.time_s, distance, style.BLUE)
-    error.set_ylim(0.0, max(0.5, 1.05 * float(distance.max())))
-    style.finish(error, "distance of CoG from\nset-point [m]", 0.5)
+    error.set_ylim(0.0, max(0.02, 1.05 * float(distance.max())))
+    style.finish(error, "distance of CoG from\nset-point [m]", 0.02)
     error.set_xlabel("time [s]", fontsize=style.FONT, color=style.INK)
     times = {"DP on": float(scenario["dp"]["enabled_at_s"]), "settled": settled_at_s(scenario)}
     style.mark_times(error, times)
@@ -74,8 +72,8 @@ def track(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     caption = "The run ends before the position counts as settled."
     if len(settled):
         caption = (
-            f"With DP on from {times['DP on']:g} s, the centre of gravity stays within {settled.max():.2f} m of "
-            f"the set-point after {times['settled']:g} s."
+            f"With DP on from {times['DP on']:g} s, the centre of gravity stays within "
+            f"{_distance(float(settled.max()))} of the set-point after {times['settled']:g} s."
         )
     return Plot("track", "Position keeping", caption, figure)
 
@@ -90,10 +88,16 @@ def _draw_track(figure: Figure, axes: Axes, motion: ShipMotion, goal: Mapping[st
     bar = figure.colorbar(lines, ax=axes, location="bottom", shrink=0.9, aspect=35, pad=0.02)
     bar.set_label("time [s]", fontsize=style.FONT, color=style.INK)
     bar.ax.tick_params(labelsize=style.SMALL)
-    marks: dict[str, Any] = {"markersize": 15, "linestyle": "none", "markeredgecolor": "white", "zorder": 4, "clip_on": False}
-    axes.plot(goal["east_m"], goal["north_m"], marker="*", color=style.VERMILLION, label="set-point", **marks)
-    marks |= {"markersize": 9, "markerfacecolor": "none", "markeredgecolor": style.INK, "markeredgewidth": 1.5}
-    axes.plot(east[0], north[0], marker="o", label="start", **marks)
+    marks: dict[str, Any] = {"linestyle": "none", "zorder": 4, "clip_on": False}
+    star: dict[str, Any] = {"color": style.VERMILLION, "markersize": 15, "markeredgecolor": "white"}
+    ring: dict[str, Any] = {
+        "markersize": 9,
+        "markerfacecolor": "none",
+        "markeredgecolor": style.INK,
+        "markeredgewidth": 1.5,
+    }
+    axes.plot(goal["east_m"], goal["north_m"], marker="*", label="set-point", **marks, **star)
+    axes.plot(east[0], north[0], marker="o", label="start", **marks, **ring)
     _square(axes, np.append(east, goal["east_m"]), np.append(north, goal["north_m"]))
     axes.set_xlabel("east [m]", fontsize=style.FONT, color=style.INK)
     style.finish(axes, "north [m]", 0.0)
@@ -101,9 +105,13 @@ def _draw_track(figure: Figure, axes: Axes, motion: ShipMotion, goal: Mapping[st
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=style.SMALL, frameon=False)
 
 
+def _distance(metres: float) -> str:
+    return f"{metres:.2f} m" if metres >= 0.1 else f"{1000.0 * metres:.1f} mm"
+
+
 def _square(axes: Axes, east: Array, north: Array) -> None:
-    """Show the same range, at least 1 m, on both axes with the data in the middle."""
-    half = 0.58 * max(float(np.ptp(east)), float(np.ptp(north)), 1.0)
+    """Show the same range, at least 2 cm, on both axes with the data in the middle."""
+    half = 0.58 * max(float(np.ptp(east)), float(np.ptp(north)), 0.02)
     for limit, values in ((axes.set_xlim, east), (axes.set_ylim, north)):
         middle = (float(values.min()) + float(values.max())) / 2
         limit(middle - half, middle + half)
@@ -125,7 +133,7 @@ def environment(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     for (axes,), (name, series, speed, color) in zip(grid, found, strict=False):
         style.line(axes, series.time_s, speed, color)
         style.finish(axes, f"{name} speed [m/s]", 0.2)
-        axes.set_ylim(bottom=0.0)
+        axes.set_ylim(0.0, 1.15 * float(speed.max()))
     directions = grid[-1][0]
     for name, series, speed, color in found:
         towards = np.where(speed > 0.0, towards_deg(series.values), np.nan)
@@ -134,7 +142,8 @@ def environment(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     style.legend(directions)
     style.mark_operations([[row[0] for row in grid]], style.operations_of(scenario))
     means = " and ".join(f"{name} {speed.mean():.2f} m/s" for name, _, speed, _ in found)
-    return Plot("environment", "Environment", f"Mean speeds: {means}; directions say where it flows to.", figure)
+    caption = f"Mean speeds: {means}; directions say where it flows to."
+    return Plot("environment", "Environment", caption, figure)
 
 
 def _strided(time_s: Array, values: Array) -> tuple[Array, Array]:

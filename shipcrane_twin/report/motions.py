@@ -1,7 +1,8 @@
 """From recorded poses to what a mariner reads: degrees, north and east, heading, heave.
 
 Signs: roll positive starboard down, pitch positive bow up, heading clockwise from north, heave positive up,
-down = -z of the world. These are the array forms of what `physics.frames` does for one pose; tests hold them equal.
+down = -z of the world. These are the array forms of what `physics.frames` does for one pose; tests hold
+the two equal.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class ShipMotion:
     Attributes
     ----------
     roll_deg, pitch_deg, heading_deg : ndarray
-        Positive starboard down; positive bow up; clockwise from north, 0 to 360.
+        Positive starboard down; positive bow up; clockwise from north, in [0, 360).
     north_m, east_m : ndarray
         Position of the centre of gravity.
     heave_m : ndarray
@@ -61,7 +62,7 @@ def ship_motion(odom: Series, cog_m: Sequence[float], draught_m: float) -> ShipM
         time_s=odom.time_s,
         roll_deg=np.rad2deg(np.arctan2(axes[:, 2, 1], axes[:, 2, 2])),
         pitch_deg=np.rad2deg(np.arcsin(np.clip(axes[:, 2, 0], -1.0, 1.0))),
-        heading_deg=(90.0 - np.rad2deg(yaw)) % 360.0,
+        heading_deg=_compass(90.0 - np.rad2deg(yaw)),
         north_m=cog_w[:, 1],
         east_m=cog_w[:, 0],
         heave_m=cog_w[:, 2] - (cog_b[2] - draught_m),
@@ -69,7 +70,7 @@ def ship_motion(odom: Series, cog_m: Sequence[float], draught_m: float) -> ShipM
 
 
 def rotation_matrices(quaternions: Array) -> Array:
-    """Return body-to-world matrices, shape (n, 3, 3), of quaternions (x, y, z, w), shape (n, 4), of any length > 0."""
+    """Return body-to-world matrices, shape (n, 3, 3), of quaternions (x, y, z, w), shape (n, 4)."""
     x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
     return np.stack(
         [
@@ -114,8 +115,14 @@ def position_error_m(motion: ShipMotion, north_m: float, east_m: float) -> Array
 
 
 def towards_deg(vectors_enu: Array) -> Array:
-    """Return the direction a horizontal vector points to, clockwise from north [deg, 0 to 360], shape (n,)."""
-    return np.rad2deg(np.arctan2(vectors_enu[:, 0], vectors_enu[:, 1])) % 360.0
+    """Return where horizontal vectors point to, clockwise from north [deg, in [0, 360)], shape (n,)."""
+    return _compass(np.rad2deg(np.arctan2(vectors_enu[:, 0], vectors_enu[:, 1])))
+
+
+def _compass(angle_deg: Array) -> Array:
+    """Return angles in [0, 360); the remainder of a tiny negative angle would round to 360 itself."""
+    wrapped = angle_deg % 360.0
+    return np.where(wrapped == 360.0, 0.0, wrapped)
 
 
 def continuous_deg(angle_deg: Array, near_deg: float) -> Array:

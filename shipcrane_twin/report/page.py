@@ -1,4 +1,4 @@
-"""The report of one run: a single HTML file with everything inside, and the figures as PNG files beside it."""
+"""The report of one run: one HTML file with everything inside, and the figures as PNG files beside it."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def write_report(run_dir: Path | str) -> Path:
     Parameters
     ----------
     run_dir : path
-        Holds ``bag/`` and ``scenario.yaml`` (resolved); ``summary.json`` adds what the bag cannot know, such as
-        the wall time.
+        Holds ``bag/`` and ``scenario.yaml`` (resolved); ``summary.json`` adds what the bag cannot know, such
+        as the wall time.
 
     Returns
     -------
@@ -100,7 +100,9 @@ def _summary(file: Path) -> dict[str, Any]:
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise ReportError(f"{file}: cannot be read ({error}); delete it to report from the bag alone") from error
+        raise ReportError(
+            f"{file}: cannot be read ({error}); without it the bag alone is reported"
+        ) from error
     if not isinstance(content, dict):
         raise ReportError(f"{file}: expected an object, found {type(content).__name__}")
     return content
@@ -168,8 +170,8 @@ def _results(stats: Mapping[str, Any]) -> str:
 
 def _number(value: float | None) -> str:
     if value is None:
-        return "–"
-    return f"{value:.3f}".replace("-", "−") if round(value, 3) else "0.000"
+        return "&ndash;"
+    return f"{value:.3f}".replace("-", "&minus;") if round(value, 3) else "0.000"
 
 
 def _gap_box(gaps: Sequence[Gap]) -> str:
@@ -182,8 +184,9 @@ def _gap_box(gaps: Sequence[Gap]) -> str:
 def _figure(plot: Plot, png: bytes) -> str:
     width, height = (round(inches * DPI) for inches in plot.figure.get_size_inches())
     data = base64.b64encode(png).decode("ascii")
+    alt = escape(plot.caption)
     return (
         f'<figure id="{escape(plot.name)}"><h2>{escape(plot.title)}</h2>'
-        f'<img width="{width}" height="{height}" alt="{escape(plot.caption)}" src="data:image/png;base64,{data}">'
-        f"<figcaption>{escape(plot.caption)}</figcaption></figure>"
+        f'<img width="{width}" height="{height}" alt="{alt}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{alt}</figcaption></figure>"
     )

@@ -1,4 +1,4 @@
-"""How figures look: colours, axes over time, shaded operations, decimation. Only Figure objects, no pyplot."""
+"""How figures look: colours, axes over time, shaded operations, decimation. Figure objects, no pyplot."""
 
 from __future__ import annotations
 
@@ -6,17 +6,20 @@ import re
 import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
 from shipcrane_twin.report.motions import Array
 
 # Okabe and Ito 2008: told apart with any colour vision; the order is the order of use.
-BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
+BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
+PURPLE, ORANGE = "#CC79A7", "#E69F00"
 INK, SHADE, GRID = "#222222", "#8093A8", "#D8D8D8"
 FONT = 10  # points; nothing is set smaller than SMALL
 SMALL = 9
@@ -54,7 +57,8 @@ def operations_of(scenario: Mapping[str, Any]) -> list[Operation]:
     found: list[Operation] = []
     tags: dict[str, str] = {}
     for entry in sorted(entries, key=lambda entry: (_start(entry), _end(entry))):
-        text = str(entry.get("label") or entry.get("event") or entry.get("joint") or "operation").replace("_", " ")
+        name = entry.get("label") or entry.get("event") or entry.get("joint") or "operation"
+        text = str(name).replace("_", " ")
         numbered = re.match(r"(\d+)[.):\s]+(.+)", text)
         tag = tags.setdefault(text, numbered[1] if numbered else str(len(tags) + 1))
         found.append(Operation(tag, numbered[2] if numbered else text, _start(entry), _end(entry)))
@@ -85,7 +89,7 @@ def decimate(time_s: Array, values: Array, limit: int = POINTS_MAX) -> tuple[Arr
         return time_s, values
     edges = np.linspace(0, count, limit // 2, dtype=np.intp)
     keep = {0, count - 1}
-    for start, end in zip(edges[:-1], edges[1:], strict=True):
+    for start, end in pairwise(edges.tolist()):
         part = values[start:end]
         keep.update((start + int(part.argmin()), start + int(part.argmax())))
     rows: NDArray[np.intp] = np.array(sorted(keep), dtype=np.intp)
@@ -94,7 +98,7 @@ def decimate(time_s: Array, values: Array, limit: int = POINTS_MAX) -> tuple[Arr
 
 def time_axes(rows: int, columns: int = 1, height_in: float = 2.0) -> tuple[Figure, list[list[Axes]]]:
     """Return a figure with a grid of axes that share the time axis."""
-    figure = Figure(figsize=(WIDTH_IN, height_in * rows + 0.9), layout="constrained")
+    figure = Figure(figsize=(WIDTH_IN, height_in * rows + 0.9), layout=ConstrainedLayoutEngine(wspace=0.06))
     grid = figure.subplots(rows, columns, sharex=True, squeeze=False)
     figure.align_ylabels()
     return figure, [list(row) for row in grid]
@@ -106,7 +110,7 @@ def line(axes: Axes, time_s: Array, values: Array, color: str, label: str = "", 
 
 
 def finish(axes: Axes, label: str, span: float) -> None:
-    """Give axes their label, grid and fonts; the y range becomes at least `span` so that nothing looks like a lot."""
+    """Give axes label, grid and fonts, and a y range of at least `span`: little shall look like little."""
     low, high = axes.get_ylim()
     if high - low < span:
         axes.set_ylim((low + high - span) / 2, (low + high + span) / 2)

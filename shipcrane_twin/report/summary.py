@@ -42,7 +42,9 @@ class Gap:
 
     def __str__(self) -> str:
         """One line for people."""
-        where = "messages nobody expects" if self.first_s is None else f"first missing at t = {self.first_s:g} s"
+        where = (
+            "messages nobody expects" if self.first_s is None else f"first missing at t = {self.first_s:g} s"
+        )
         return f"{self.topic}: {self.found} messages instead of {self.expected}, {where}"
 
 
@@ -67,9 +69,9 @@ def summarise(signals: Signals, scenario: Mapping[str, Any]) -> dict[str, Any]:
     motion = motion_of(signals, scenario)
     tension = wire_tension_kn(signals)
     return {
-        "roll_deg": _stats(motion and motion.roll_deg, "mean", "std", "min", "max"),
-        "pitch_deg": _stats(motion and motion.pitch_deg, "mean", "std", "min", "max"),
-        "heave_m": _stats(motion and motion.heave_m, "mean", "std", "min", "max"),
+        "roll_deg": _stats(motion.roll_deg if motion else None, "mean", "std", "min", "max"),
+        "pitch_deg": _stats(motion.pitch_deg if motion else None, "mean", "std", "min", "max"),
+        "heave_m": _stats(motion.heave_m if motion else None, "mean", "std", "min", "max"),
         "position_error_m": _stats(_settled_error(motion, scenario), "rms", "max"),
         "wire_tension_kn": _stats(None if tension is None else tension[1], "mean", "max", "min"),
         "payload_sway_deg": _stats(_hanging_sway(signals), "rms", "max"),
@@ -168,7 +170,8 @@ def find_gaps(
         stamps = _stamps(signals, topic.name)
         missing = np.setdiff1d(due_ns, stamps)
         if len(missing) or len(stamps) != len(due_ns):
-            gaps.append(Gap(topic.name, len(due_ns), len(stamps), missing[0] * 1e-9 if len(missing) else None))
+            first_s = float(missing[0]) * 1e-9 if len(missing) else None
+            gaps.append(Gap(topic.name, len(due_ns), len(stamps), first_s))
     return gaps
 
 

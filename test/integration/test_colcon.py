@@ -57,6 +57,7 @@ def test_files_are_installed_under_share(prefix, folder):
     assert files(prefix / "share" / NAME) == files(ROOT) != set()
 
 
+@pytest.mark.skipif(" " in sys.executable, reason="colcon's setup.sh does not quote the path of Python")
 def test_sourced_workspace_runs_the_installed_code(prefix):
     script = f"command -v shipcrane; python3 -c 'import {NAME}; print({NAME}.__file__)'"
     done = subprocess.run(
@@ -69,6 +70,6 @@ def test_sourced_workspace_runs_the_installed_code(prefix):
     )
 
     assert done.returncode == 0, done.stderr
-    command, module = done.stdout.split()
+    command, module = done.stdout.splitlines()
     assert Path(command).is_relative_to(prefix)
     assert Path(module).is_relative_to(prefix)

@@ -77,3 +77,13 @@ def mixed_chain() -> ChainParams:
     return make_chain(
         dh=rows, kind=kind, mass=rng.uniform(50.0, 900.0, 6), cog=rng.normal(size=(6, 3)), inertia=tensors
     )
+
+
+def random_vectors(rng, count: int, size: float = 1.0) -> list[np.ndarray]:
+    return [rng.normal(size=3) * size for _ in range(count)]
+
+
+def inertia_tensor(row: np.ndarray) -> np.ndarray:
+    """Write xx, xy, xz, yy, yz, zz as a matrix."""
+    xx, xy, xz, yy, yz, zz = row
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

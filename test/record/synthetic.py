@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import yaml
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
+
+from shipcrane_twin.cosim.topics import ACCEL, CLOCK, INERTIA, JOINTS, ODOMETRY, POSE, TOPICS, TWIST, WRENCH
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 HOT_MS, TELEMETRY_MS = 20, 100
@@ -65,10 +68,6 @@ def stamped(msgtype, attribute, frame):
     return build
 
 
-def wrench(frame):
-    return stamped("geometry_msgs/msg/WrenchStamped", "wrench", frame)
-
-
 def pose_stamped(time_ns, numbers):
     return make("geometry_msgs/msg/PoseStamped", header=header(time_ns), pose=pose(numbers))
 
@@ -91,12 +90,28 @@ def joint_state(time_ns, names, position=(), velocity=(), effort=()):
     )
 
 
-def joints(*names):
-    return lambda time_ns, numbers: joint_state(time_ns, names, *np.reshape(numbers, (3, -1)))
+def builder(topic):
+    """Return the function (time_ns, numbers) -> message for a row of the topic table."""
+    if topic.type == JOINTS:
+
+        def build(time_ns, numbers):
+            parts = dict(zip(topic.fields, np.reshape(numbers, (len(topic.fields), -1)), strict=True))
+            return joint_state(time_ns, topic.joints, **parts)
+
+        return build
+    return {
+        CLOCK: clock,
+        ODOMETRY: partial(odometry, child=topic.child_frame),
+        POSE: pose_stamped,
+        INERTIA: inertia_stamped,
+        TWIST: stamped(TWIST, "twist", topic.frame),
+        ACCEL: stamped(ACCEL, "accel", topic.frame),
+        WRENCH: stamped(WRENCH, "wrench", topic.frame),
+    }[topic.type]
 
 
 def write_bag(bag_dir, topics, chunk_s=2.0):
-    """Write ``topics``: name -> list of (log_ns, message); several zstd chunks, topics interleaved in time."""
+    """Write ``topics``: name -> list of (log_ns, message); zstd chunks, topics interleaved in time."""
     rows = sorted(
         ((log_ns, name, message) for name, messages in topics.items() for log_ns, message in messages),
         key=lambda row: row[0],
@@ -120,7 +135,7 @@ def write_bag(bag_dir, topics, chunk_s=2.0):
 
 @dataclass
 class Lift:
-    """A made-up lift whose every signal has a closed form; times in s, angles in deg as the report shows them."""
+    """A made-up lift whose every signal has a closed form; angles in deg as the report shows them."""
 
     duration_s: float = 20.0
     roll_deg: tuple[float, float, float] = (2.0, 0.5, 8.0)  # mean, amplitude, period
@@ -158,56 +173,38 @@ class Lift:
 
     def topics(self):
         hot, slow = self.times_ns(HOT_MS), self.times_ns(TELEMETRY_MS)
-        zeros6 = np.zeros((len(hot), 6))
-        wind = zeros6.copy()
-        wind[:, 0] = self.wind_speed
         time_s = hot * 1e-9
         origin_w, turn = self.base_link(time_s)
         tip_w, load_w = self.tip_and_load(time_s)
         still = np.tile([0, 0, 0, 1.0] + 6 * [0], (len(hot), 1))
         pull = np.zeros((len(hot), 6))
         pull[:, 2] = -self.wave(self.tension_n, time_s)
-        base = np.column_stack([zeros6[:, :2], -59077.0 + pull[:, 2], pull[:, 2] * 4, zeros6[:, :2]])
-        inertia = np.tile([6024, 0.5, -1, 2, 8e3, 1, 2, 9e3, 3, 7e3], (len(hot), 1))
-        slow_s = slow * 1e-9
-        slow_origin_w, slow_turn = self.base_link(slow_s)
-        set_turn = Rotation.from_euler("z", 90.0 - self.setpoint["heading_deg"], degrees=True).as_quat()
-        goal = np.array([self.setpoint["east_m"], self.setpoint["north_m"], -DRAUGHT_M, *set_turn])
-        ramp = np.clip((slow_s - 0.4 * self.duration_s) / (0.3 * self.duration_s), 0, 1)
+        base = pull * [0, 0, 1, 0, 0, 0]
+        base[:, 2] -= 59077.0
+        base[:, 3] = -5.0 * pull[:, 2]
+        ramp = np.clip((slow * 1e-9 / self.duration_s - 0.4) / 0.3, 0, 1)
         arm = np.column_stack([-1.2 + 2.4 * ramp, 0.6 + 0.3 * ramp, 1.0 - 0.2 * ramp, 2.0 + 0 * ramp])
-        crane = np.hstack([arm, arm[:, :2], np.zeros((len(slow), 12))])
-        twist = "geometry_msgs/msg/TwistStamped"
-        table = {
-            "/clock": (clock, hot, zeros6),
-            "/environment/current": (stamped(twist, "twist", "map"), hot, zeros6),
-            "/environment/wind": (stamped(twist, "twist", "map"), hot, wind),
-            "/environment/wind_wrench": (wrench("base_link"), hot, zeros6),
-            "/vessel/odom": (odometry, hot, np.hstack([origin_w, turn.as_quat(), zeros6])),
-            "/vessel/accel": (stamped("geometry_msgs/msg/AccelStamped", "accel", "base_link"), hot, zeros6),
-            "/crane/tip": (odometry, hot, np.hstack([tip_w, still])),
-            "/crane/base_wrench": (wrench("crane_base"), hot, base),
-            "/crane/base_inertia": (inertia_stamped, hot, inertia),
-            "/payload/wire_wrench": (wrench("map"), hot, pull),
-            "/payload/odom": (odometry, hot, np.hstack([load_w, still])),
-            "/vessel/pose": (pose_stamped, slow, np.hstack([slow_origin_w, slow_turn.as_quat()])),
-            "/dp/setpoint": (pose_stamped, slow, np.tile(goal, (len(slow), 1))),
-            "/dp/wrench": (wrench("base_link"), slow, np.zeros((len(slow), 6))),
-            "/thrusters/joint_states": (
-                joints("azimuth_port", "azimuth_starboard", "bow_tunnel"), slow, np.zeros((len(slow), 9))
-            ),
-            "/crane/joint_states": (
-                joints("slew", "boom", "knuckle", "telescope", "boom_cylinder", "knuckle_cylinder"), slow, crane
-            ),
-            "/crane/joint_command_applied": (
-                lambda t, v: joint_state(t, ("slew", "boom", "knuckle", "telescope", "winch"), (), v), slow,
-                np.zeros((len(slow), 5)),
-            ),
-            "/winch/joint_states": (joints("winch"), slow, np.tile([1.0, 0.0, 6865.0], (len(slow), 1))),
-        }  # fmt: skip
-        return {
-            name: [(int(t), build(int(t), row)) for t, row in zip(times, rows, strict=True)]
-            for name, (build, times, rows) in table.items()
+        signals = {
+            "/environment/wind": np.tile([self.wind_speed, 0, 0, 0, 0, 0], (len(hot), 1)),
+            "/vessel/odom": np.hstack([origin_w, turn.as_quat(), np.zeros((len(hot), 6))]),
+            "/crane/tip": np.hstack([tip_w, still]),
+            "/crane/base_wrench": base,
+            "/crane/base_inertia": np.tile([6024, 0.5, -1, 2, 8e3, 1, 2, 9e3, 3, 7e3], (len(hot), 1)),
+            "/payload/wire_wrench": pull,
+            "/payload/odom": np.hstack([load_w, still]),
+            "/crane/joint_states": np.hstack([arm, arm[:, :2], np.zeros((len(slow), 12))]),
+            "/winch/joint_states": np.tile([1.0, 0.0, 6865.0], (len(slow), 1)),
         }
+        result = {}
+        for topic in TOPICS:
+            if topic.rate == "irregular":
+                continue
+            times = hot if topic.rate == "step" else slow
+            width = 0 if topic.type == CLOCK else topic.width
+            rows = signals.get(topic.name, np.zeros((len(times), width)))
+            build = builder(topic)
+            result[topic.name] = [(int(t), build(int(t), row)) for t, row in zip(times, rows, strict=True)]
+        return result
 
     def scenario(self):
         a, b = 0.4 * self.duration_s, 0.7 * self.duration_s
@@ -225,10 +222,10 @@ class Lift:
                 "setpoint": dict(self.setpoint),
             },
             "operations": [
-                {"from_s": a, "to_s": b, "joint": "slew", "speed": 0.1, "label": "swing to port & land"},
-                {"from_s": a, "to_s": 0.5 * (a + b), "joint": "boom", "speed": 0.1, "label": "lift"},
-                {"at_s": 0.9 * self.duration_s, "event": "release", "label": "off-load"},
+                {"from_s": a, "to_s": b, "joint": "slew", "label": "swing to port & land"},
+                {"from_s": a, "to_s": 0.5 * (a + b), "joint": "boom", "label": "lift"},
             ],
+            "events": [{"at_s": 0.9 * self.duration_s, "event": "release_payload", "label": "off-load"}],
         }
 
 
@@ -242,6 +239,6 @@ def write_run(run_dir, lift=None, drop=None):
     run_dir.mkdir(parents=True, exist_ok=True)
     write_bag(run_dir / "bag", topics)
     (run_dir / "scenario.yaml").write_text(yaml.safe_dump(lift.scenario(), sort_keys=False))
-    summary = {"scenario": "made_up", "seed": 7, "mode": "inline", "real_time_factor": 321.5, "wall_time_s": 1.5}
+    summary = {"scenario": "made_up", "seed": 7, "mode": "inline", "real_time_factor": 321.5}
     (run_dir / "summary.json").write_text(json.dumps(summary))
     return run_dir

@@ -1,0 +1,143 @@
+"""Write rosbag2 directories: MCAP in chunks, serialized messages as they come, simulated time as log time."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+from mcap.writer import CompressionType, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from shipcrane_twin.cosim.topics import Topic
+
+LIBRARY = "shipcrane_twin"
+COMPRESSION = {"zstd": CompressionType.ZSTD, "none": CompressionType.NONE}
+QOS = """- history: keep_last
+  depth: {depth}
+  reliability: reliable
+  durability: volatile
+  deadline: {{sec: 9223372036, nsec: 854775807}}
+  lifespan: {{sec: 9223372036, nsec: 854775807}}
+  liveliness: automatic
+  liveliness_lease_duration: {{sec: 9223372036, nsec: 854775807}}
+  avoid_ros_namespace_conventions: false
+"""
+
+
+class BagWriter:
+    """A rosbag2 directory being written; `close` makes it complete.
+
+    Parameters
+    ----------
+    folder : Path
+        Is made anew; one that exists is an error.
+    topics : sequence of Topic
+        The topics to come.
+    compression : str
+        ``zstd`` or ``none``.
+    chunk_kib : int
+        Size of an uncompressed chunk [KiB].
+    metadata : mapping of str to str
+        Kept in the file and in metadata.yaml: scenario, version, seed.
+
+    Raises
+    ------
+    FileExistsError
+        If the folder exists.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        topics: tuple[Topic, ...],
+        *,
+        compression: str,
+        chunk_kib: int,
+        metadata: Mapping[str, str],
+    ) -> None:
+        folder.mkdir(parents=True, exist_ok=False)
+        self._folder = folder
+        self._topics = topics
+        self._custom = dict(metadata)
+        self.counts = dict.fromkeys((topic.name for topic in topics), 0)
+        self._first_ns: int | None = None
+        self._last_ns = 0
+        self._path = folder / f"{folder.name}_0.mcap"
+        self._stream = self._path.open("wb")
+        self._writer = Writer(
+            self._stream, chunk_size=chunk_kib * 1024, compression=COMPRESSION[compression], enable_crcs=True
+        )
+        self._writer.start(profile="ros2", library=LIBRARY)
+        self._hashes: dict[str, str] = {}
+        self._channels = self._register()
+        self._writer.add_metadata("shipcrane_twin", self._custom)
+
+    def _register(self) -> dict[str, int]:
+        store = get_typestore(Stores.ROS2_JAZZY)
+        schemas: dict[str, int] = {}
+        channels = {}
+        for topic in self._topics:
+            if topic.type not in schemas:
+                definition, _ = store.generate_msgdef(topic.type, ros_version=2)
+                schemas[topic.type] = self._writer.register_schema(topic.type, "ros2msg", definition.encode())
+                self._hashes[topic.type] = store.hash_rihs01(topic.type)
+            channels[topic.name] = self._writer.register_channel(
+                topic.name,
+                "cdr",
+                schemas[topic.type],
+                {"offered_qos_profiles": QOS.format(depth=10), "topic_type_hash": self._hashes[topic.type]},
+            )
+        return channels
+
+    def write(self, topic: str, time_ns: int, message: bytes) -> None:
+        """Append one serialized message with its simulated time [ns] as log and publish time."""
+        self._writer.add_message(self._channels[topic], time_ns, message, time_ns, self.counts[topic])
+        self.counts[topic] += 1
+        if self._first_ns is None:
+            self._first_ns = time_ns
+        self._first_ns = min(self._first_ns, time_ns)
+        self._last_ns = max(self._last_ns, time_ns)
+
+    def close(self) -> None:
+        """Finish the file and write metadata.yaml."""
+        self._writer.finish()
+        self._stream.close()
+        text = yaml.safe_dump({"rosbag2_bagfile_information": self._information()}, sort_keys=False)
+        part = self._folder / ".metadata.part"
+        part.write_text(text, encoding="utf-8")
+        part.replace(self._folder / "metadata.yaml")
+
+    def _information(self) -> dict[str, Any]:
+        first = self._first_ns or 0
+        start = {"nanoseconds_since_epoch": first}
+        duration = {"nanoseconds": self._last_ns - first}
+        total = sum(self.counts.values())
+        file = {"path": self._path.name, "starting_time": start, "duration": duration, "message_count": total}
+        return {
+            "version": 9,
+            "storage_identifier": "mcap",
+            "duration": dict(duration),
+            "starting_time": dict(start),
+            "message_count": total,
+            "topics_with_message_count": [
+                {
+                    "topic_metadata": {
+                        "name": topic.name,
+                        "type": topic.type,
+                        "serialization_format": "cdr",
+                        "offered_qos_profiles": [],
+                        "type_description_hash": self._hashes[topic.type],
+                    },
+                    "message_count": self.counts[topic.name],
+                }
+                for topic in self._topics
+            ],
+            "compression_format": "",
+            "compression_mode": "",
+            "relative_file_paths": [self._path.name],
+            "files": [file],
+            "custom_data": self._custom,
+            "ros_distro": "jazzy",
+        }
+
+

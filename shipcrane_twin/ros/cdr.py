@@ -1,0 +1,183 @@
+"""Serialized messages by template: the few layouts of the loop, written and read without a type library.
+
+CDR, little endian: 4 bytes of encapsulation, then every number aligned to its size counted from there.
+Tests hold every layout against rclpy's and rosbags' own serialization. Needs no ROS, so that the inline
+runner records the same bytes as the graph.
+"""
+
+import struct
+from collections.abc import Sequence
+
+import numpy as np
+
+from shipcrane_twin.cosim.time import stamp_parts
+from shipcrane_twin.cosim.topics import CLOCK, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
+from shipcrane_twin.physics.arrays import Array
+
+ENCAPSULATION = b"\x00\x01\x00\x00"
+ORIGIN = 4
+"""Where alignment counts from."""
+
+
+class CdrError(ValueError):
+    """A serialized message does not have the layout of its topic."""
+
+
+class _Writer:
+    """Appends CDR primitives."""
+
+    def __init__(self) -> None:
+        self.data = bytearray(ENCAPSULATION)
+
+    def align(self, size: int) -> None:
+        self.data += bytes(-(len(self.data) - ORIGIN) % size)
+
+    def count(self, number: int) -> None:
+        self.align(4)
+        self.data += struct.pack("<I", number)
+
+    def string(self, text: str) -> None:
+        raw = text.encode() + b"\0"
+        self.count(len(raw))
+        self.data += raw
+
+    def doubles(self, number: int) -> int:
+        """Append zeros; return the offset of the first."""
+        if number:
+            self.align(8)
+        start = len(self.data)
+        self.data += bytes(8 * number)
+        return start
+
+
+class Template:
+    """Serialized messages of one topic: everything fixed but stamp and numbers.
+
+    Parameters
+    ----------
+    topic : Topic
+        Of one of the types of `cosim.topics`; not DiagnosticArray.
+    """
+
+    def __init__(self, topic: Topic) -> None:
+        writer = _Writer()
+        writer.data += bytes(8)  # stamp
+        if topic.type != CLOCK:
+            writer.string(topic.frame)
+        blocks: list[tuple[int, int]] = []
+        if topic.type == JOINTS:
+            writer.count(len(topic.joints))
+            for name in topic.joints:
+                writer.string(name)
+            for field in JOINT_FIELDS:
+                number = len(topic.joints) if field in topic.fields else 0
+                writer.count(number)
+                blocks.append((writer.doubles(number), number))
+        elif topic.type == ODOMETRY:
+            writer.string(topic.child_frame)
+            pose = writer.doubles(7)
+            writer.doubles(36)
+            twist = writer.doubles(6)
+            writer.doubles(36)
+            blocks = [(pose, 7), (twist, 6)]
+        elif topic.type != CLOCK:
+            blocks = [(writer.doubles(topic.width), topic.width)]
+        self.topic = topic
+        self._buffer = writer.data
+        self._views = [
+            np.frombuffer(self._buffer, dtype="<f8", count=number, offset=start) for start, number in blocks if number
+        ]
+        self._spans = [(start, number) for start, number in blocks if number]
+
+    def encode(self, time_ns: int, values: Array) -> bytes:
+        """Return the serialized message with this stamp and these values (the topic's width)."""
+        struct.pack_into("<iI", self._buffer, ORIGIN, *stamp_parts(time_ns))
+        at = 0
+        for view in self._views:
+            view[:] = values[at : at + len(view)]
+            at += len(view)
+        return bytes(self._buffer)
+
+    def decode(self, message: bytes) -> Array:
+        """Return the values of a serialized message of this topic, whoever wrote it.
+
+        Raises
+        ------
+        CdrError
+            If its layout is another: other frame names are fine, missing or other joints are not.
+        """
+        spans = self._spans
+        if len(message) != len(self._buffer) or message[12 : spans[0][0]] != self._buffer[12 : spans[0][0]]:
+            spans = self._foreign_spans(message)
+        # copies, because kernels are compiled for arrays that are aligned and may be written
+        if len(spans) == 1:
+            return np.frombuffer(message, "<f8", spans[0][1], spans[0][0]).copy()
+        return np.concatenate([np.frombuffer(message, "<f8", number, start) for start, number in spans])
+
+    def _foreign_spans(self, message: bytes) -> list[tuple[int, int]]:
+        """Locate the numbers of a message whose header strings have other lengths."""
+        if self.topic.type == JOINTS:
+            raise CdrError(f"{self.topic.name}: a JointState with other joints or fields than {self.topic.joints}")
+        at = skip_string(message, ORIGIN + 8)
+        if self.topic.type == ODOMETRY:
+            at = skip_string(message, at)
+        shift = at + (-(at - ORIGIN) % 8) - self._spans[0][0]
+        spans = [(start + shift, number) for start, number in self._spans]
+        if spans[-1][0] + 8 * spans[-1][1] > len(message):
+            raise CdrError(f"{self.topic.name}: the message has {len(message)} bytes, too few for {self.topic.type}")
+        return spans
+
+
+def skip_string(message: bytes, at: int) -> int:
+    """Return the offset behind the string that starts (aligned to 4) at an offset."""
+    at += -(at - ORIGIN) % 4
+    if at + 4 > len(message):
+        raise CdrError("the message ends inside a string")
+    return at + 4 + int(struct.unpack_from("<I", message, at)[0])
+
+
+def read_stamp(message: bytes) -> int:
+    """Return the stamp [ns] of a serialized Clock or of any message that starts with a Header."""
+    sec, nanosec = struct.unpack_from("<iI", message, ORIGIN)
+    return int(sec) * 1_000_000_000 + int(nanosec)
+
+
+def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
+    """Return names and velocities of any serialized JointState.
+
+    Raises
+    ------
+    CdrError
+        If the bytes are not a JointState.
+    """
+    try:
+        at = skip_string(message, ORIGIN + 8)
+        names, at = _read_names(message, at)
+        _, at = _read_doubles(message, at)
+        velocities, _ = _read_doubles(message, at)
+    except (struct.error, ValueError) as err:
+        raise CdrError(f"not a JointState: {err}") from None
+    return names, velocities
+
+
+def _read_count(message: bytes, at: int) -> tuple[int, int]:
+    at += -(at - ORIGIN) % 4
+    return struct.unpack_from("<I", message, at)[0], at + 4
+
+
+def _read_names(message: bytes, at: int) -> tuple[list[str], int]:
+    count, at = _read_count(message, at)
+    names = []
+    for _ in range(count):
+        start = at + (-(at - ORIGIN) % 4) + 4
+        at = skip_string(message, at)
+        names.append(message[start : at - 1].decode())
+    return names, at
+
+
+def _read_doubles(message: bytes, at: int) -> tuple[list[float], int]:
+    count, at = _read_count(message, at)
+    if not count:
+        return [], at
+    at += -(at - ORIGIN) % 8
+    return list(struct.unpack_from(f"<{count}d", message, at)), at + 8 * count

@@ -1,0 +1,126 @@
+"""Publishers and subscriptions of the loop: serialized messages, taken by the loop itself, picked by stamp."""
+
+import importlib
+from collections.abc import Iterable
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.impl.implementation_singleton import rclpy_implementation as rcl
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+from shipcrane_twin.cosim.topics import Topic
+from shipcrane_twin.ros.cdr import read_stamp
+
+LOOP_DEPTH = 400
+"""Messages kept per topic: more than the clock ever lets anyone run ahead of the slowest listener."""
+
+COMMAND_DEPTH = 10
+
+LOOP_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=LOOP_DEPTH,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+)
+
+
+def message_class(type_name: str) -> type[Any]:
+    """Return the Python class of ``package/msg/Name``."""
+    package, _, name = type_name.split("/")
+    found: type[Any] = getattr(importlib.import_module(f"{package}.msg"), name)
+    return found
+
+
+class LoopOwned(CallbackGroup):
+    """Keeps the executor away from subscriptions that the loop takes by itself."""
+
+    def can_execute(self, entity: Any) -> bool:
+        """Never."""
+        return False
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Never."""
+        return False
+
+    def ending_execution(self, entity: Any) -> None:
+        """Nothing was begun."""
+
+
+class Inbox:
+    """Serialized messages of one topic, by stamp."""
+
+    def __init__(self, node: Node, topic: Topic, group: LoopOwned) -> None:
+        self.topic = topic
+        self.kind = message_class(topic.type)
+        self.subscription = node.create_subscription(
+            self.kind, topic.name, _unused, LOOP_QOS, callback_group=group, raw=True
+        )
+        self.handle = self.subscription.handle
+        self.waiting: dict[int, bytes] = {}
+
+    def take(self) -> bytes | None:
+        """Take one message that has arrived; None if there is none."""
+        found = self.handle.take_message(self.kind, True)
+        return None if found is None else found[0]
+
+    def keep(self) -> bool:
+        """Take one message and keep it under its stamp; False if none has arrived."""
+        message = self.take()
+        if message is None:
+            return False
+        self.waiting[read_stamp(message)] = message
+        return True
+
+    def pop(self, time_ns: int) -> bytes:
+        """Return the message of a time and forget it and all before it."""
+        message = self.waiting.pop(time_ns)
+        if self.waiting and len(self.waiting) > LOOP_DEPTH:
+            for stamp in [stamp for stamp in self.waiting if stamp < time_ns]:
+                del self.waiting[stamp]
+        return message
+
+
+def _unused(message: bytes) -> None:
+    """Stand where rclpy wants a callback; the loop takes messages by itself."""
+
+
+class Mailroom:
+    """Waits for messages of several inboxes with one wait set that is built once."""
+
+    def __init__(self, node: Node, inboxes: Iterable[Inbox]) -> None:
+        self.inboxes = list(inboxes)
+        with node.context.handle:
+            self._wait_set = rcl.WaitSet(len(self.inboxes), 0, 0, 0, 0, 0, node.context.handle)
+
+    def wait(self, timeout_s: float) -> list[Inbox]:
+        """Wait for messages and return the inboxes that have any."""
+        wait_set = self._wait_set
+        wait_set.clear_entities()
+        for inbox in self.inboxes:
+            wait_set.add_subscription(inbox.handle)
+        wait_set.wait(int(timeout_s * 1e9))
+        return [inbox for i, inbox in enumerate(self.inboxes) if wait_set.is_ready("subscription", i)]
+
+
+def listeners_matched(node: Node, publishers: dict[str, Any], expected: dict[str, set[str]]) -> list[str]:
+    """Return the expected listeners that are not connected yet, as ``node (topic)``.
+
+    Parameters
+    ----------
+    node : Node
+    publishers : dict
+        Publisher by topic.
+    expected : dict
+        Names of the nodes that must hear a topic.
+    """
+    missing = []
+    for topic, publisher in publishers.items():
+        wanted = expected.get(topic, set())
+        if not wanted:
+            continue
+        present = [info.node_name for info in node.get_subscriptions_info_by_topic(publisher.topic_name)]
+        missing += [f"{name} ({topic})" for name in sorted(wanted - set(present))]
+        if not missing and publisher.get_subscription_count() < len(present):
+            missing.append(f"a listener that was seen but is not connected yet ({topic})")
+    return missing

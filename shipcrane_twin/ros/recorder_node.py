@@ -1,0 +1,111 @@
+"""The recorder: takes serialized messages as they come and writes them in order."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+from shipcrane_twin import __version__
+from shipcrane_twin.config.load import load_scenario, scenario_yaml
+from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.cosim.topics import BY_NAME, TOPICS
+from shipcrane_twin.record.bag import BagWriter
+from shipcrane_twin.record.collector import StepCollector
+from shipcrane_twin.ros.cdr import Template, read_stamp
+from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
+from shipcrane_twin.ros.parameters import declare, declare_run_parameters
+from shipcrane_twin.ros.process import StopFlag, write_result
+from shipcrane_twin.ros.subsystem_node import SERVICE_PERIOD_S
+
+PAUSE_S = 0.004
+"""Rest between two rounds: taking many messages at once costs far less than waking for each."""
+
+PROGRESS = "/recorder/progress"
+_NO_VALUES = np.empty(0)
+
+
+class RecorderNode:
+    """Records the twin's topics into ``OUT/bag``.
+
+    Parameters
+    ----------
+    stop : StopFlag
+    """
+
+    def __init__(self, stop: StopFlag) -> None:
+        self._stop = stop
+        self.node = Node("recorder")
+        run = declare_run_parameters(self.node)
+        out = declare(self.node, "out", run.run_dir, "Folder in which bag/ is written; empty is the run's")
+        scenario = load_scenario(run.scenario)
+        self._run_dir = run.run_dir
+        self._step_ns, self._last = scenario.step_ns, scenario.step_count
+        topics = tuple(topic for topic in TOPICS if topic.name != PROGRESS)
+        try:
+            self._bag = BagWriter(
+                Path(out or ".") / "bag",
+                topics,
+                compression=scenario.recording.compression,
+                chunk_kib=scenario.recording.chunk_kib,
+                metadata={
+                    "scenario": scenario_yaml(scenario),
+                    "version": __version__,
+                    "seed": str(scenario.seed),
+                },
+            )
+        except OSError as err:
+            raise ConfigError(f"recorder: the bag cannot be written: {err}; give another folder") from None
+        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+        group = LoopOwned()
+        self._mail = Mailroom(self.node, [Inbox(self.node, topic, group) for topic in topics])
+        self._template = Template(BY_NAME[PROGRESS])
+        self._publisher = self.node.create_publisher(message_class(BY_NAME[PROGRESS].type), PROGRESS, LOOP_QOS)
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self.node)
+        self._busy_ns = 0
+
+    def run(self) -> None:
+        """Record until told to stop."""
+        service_at = 0.0
+        told = -1
+        while not self._stop:
+            arrived = self._mail.wait(SERVICE_PERIOD_S)
+            began = time.perf_counter_ns()
+            if arrived:
+                self._drain()
+            if self._collector.complete > told:
+                told = self._collector.complete
+                self._publisher.publish(self._template.encode(told * self._step_ns, _NO_VALUES))
+            self._busy_ns += time.perf_counter_ns() - began
+            if time.monotonic() > service_at:
+                self._executor.spin_once(timeout_sec=0.0)
+                service_at = time.monotonic() + SERVICE_PERIOD_S
+            if arrived:
+                time.sleep(PAUSE_S)
+        self._drain()
+
+    def close(self) -> None:
+        """Finish the bag and leave the graph."""
+        self._collector.flush()
+        self._bag.close()
+        steps = max(self._collector.complete, 1)
+        write_result(
+            self._run_dir,
+            "recorder",
+            {
+                "steps": self._collector.complete,
+                "messages": sum(self._bag.counts.values()),
+                "us_per_step": {"record": self._busy_ns / 1000 / steps},
+            },
+        )
+        self._executor.shutdown()
+        self.node.destroy_node()
+
+    def _drain(self) -> None:
+        """Take all that has arrived."""
+        for inbox in self._mail.inboxes:
+            name = inbox.topic.name
+            while (message := inbox.take()) is not None:
+                self._collector.add(name, read_stamp(message), message)

@@ -1,0 +1,224 @@
+"""The lockstep loop around one subsystem: wait by stamp, compute, publish."""
+
+import dataclasses
+import time
+
+import numpy as np
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+from shipcrane_twin.config.load import load_scenario
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim.coupling import CHAIN, INPUTS, SCHEMES
+from shipcrane_twin.cosim.participant import Participant
+from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
+from shipcrane_twin.cosim.topics import BY_NAME, published_by
+from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
+from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
+from shipcrane_twin.ros.parameters import declare_run_parameters
+from shipcrane_twin.ros.process import StopFlag, run_node, write_result
+
+COMMAND_TOPIC = "/crane/joint_command"
+DONE_TOPIC = {name: [t.name for t in published_by(name) if t.rate == "step"][-1] for name in CHAIN}
+"""What each participant publishes last in a step: the clock listens to it."""
+
+SERVICE_PERIOD_S = 0.1
+"""Wall time between two looks at parameters and services."""
+
+KINDS = ("wait", "decode", "physics", "encode", "publish")
+
+
+def step_listeners(recorded: bool) -> dict[str, set[str]]:
+    """Return the nodes that must hear each topic before the first message leaves."""
+    expected: dict[str, set[str]] = {name: {"recorder"} if recorded else set() for name in BY_NAME}
+    for consumer, topics in INPUTS.items():
+        for topic in topics:
+            expected[topic].add(consumer)
+    for name in CHAIN:
+        expected["/clock"].add(name)
+        expected[DONE_TOPIC[name]].add("clock")
+    return expected
+
+
+class SubsystemNode:
+    """One subsystem in its own process.
+
+    Parameters
+    ----------
+    name : str
+        Subsystem of the chain, also the node's name.
+    stop : StopFlag
+    """
+
+    def __init__(self, name: str, stop: StopFlag) -> None:
+        self.name = name
+        self._stop = stop
+        self.node = Node(name)
+        run = declare_run_parameters(self.node)
+        self._run_dir = run.run_dir
+        scenario = load_scenario(run.scenario)
+        self._step_ns, self._last = scenario.step_ns, scenario.step_count
+        warm_up(name, scenario)
+        self._participant = Participant(name, scenario)
+
+        group = LoopOwned()
+        self._clock = Inbox(self.node, BY_NAME["/clock"], group)
+        scheme = SCHEMES[scenario.coupling]
+        self._inputs = [
+            (Inbox(self.node, topic, group), scheme.lag(name, topic.publisher) * scenario.step_ns, Template(topic))
+            for topic in map(BY_NAME.__getitem__, INPUTS[name])
+        ]
+        self._command = (
+            Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if hasattr(self._participant.subsystem, "commands") else None
+        )
+        inboxes = [self._clock, *(inbox for inbox, _, _ in self._inputs)]
+        self._mail = Mailroom(self.node, inboxes + ([self._command] if self._command else []))
+        topics = published_by(name)
+        self._templates = {topic.name: Template(topic) for topic in topics}
+        self._publishers = {
+            topic.name: self.node.create_publisher(message_class(topic.type), topic.name, LOOP_QOS) for topic in topics
+        }
+        self._expected = step_listeners(run.recorded)
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self.node)
+        self._service_at = 0.0
+        self._allowed = -1
+        self._spent = dict.fromkeys(KINDS, 0)
+
+    def run(self) -> None:
+        """Step until the end of the scenario, then stay until told to stop."""
+        self._connect()
+        while not self._stop and self._participant.step < self._last:
+            started = time.perf_counter_ns()
+            step = self._participant.step + 1
+            if not self._gather(step):
+                break
+            waited = time.perf_counter_ns()
+            inputs = self._decode(step)
+            decoded = time.perf_counter_ns()
+            out = self._participant.advance(inputs)
+            computed = time.perf_counter_ns()
+            self._publish(step, out)
+            self._spent["wait"] += waited - started
+            self._spent["decode"] += decoded - waited
+            self._spent["physics"] += computed - decoded
+        self._report()
+        while not self._stop:
+            self._service(0.05)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._executor.shutdown()
+        self.node.destroy_node()
+
+    def _connect(self) -> None:
+        """Wait until everyone who must hear this node is connected."""
+        told = time.monotonic()
+        while not self._stop:
+            missing = listeners_matched(self.node, self._publishers, self._expected)
+            if not missing:
+                return
+            if time.monotonic() - told > 5.0:
+                self.node.get_logger().warn(f"waiting for {', '.join(missing)}")
+                told = time.monotonic()
+            self._service(0.02)
+
+    def _service(self, timeout_s: float) -> None:
+        self._executor.spin_once(timeout_sec=timeout_s)
+        self._service_at = time.monotonic() + SERVICE_PERIOD_S
+
+    def _gather(self, step: int) -> bool:
+        """Wait until the clock allows a step and all its inputs are here; False when told to stop."""
+        time_ns = step * self._step_ns
+        while True:
+            if self._allowed >= time_ns and (
+                step == 0 or all(time_ns - lag in inbox.waiting for inbox, lag, _ in self._inputs)
+            ):
+                return True
+            if self._stop:
+                return False
+            for inbox in self._mail.wait(SERVICE_PERIOD_S):
+                if not inbox.keep():
+                    continue
+                if inbox is self._clock:
+                    self._allowed = max(self._allowed, *inbox.waiting)
+                    inbox.waiting.clear()
+                elif inbox is self._command:
+                    self._obey()
+            if time.monotonic() > self._service_at:
+                self._service(0.0)
+
+    def _obey(self) -> None:
+        """Hand an operator's command on; a wrong one is refused with a warning."""
+        assert self._command is not None
+        for message in self._command.waiting.values():
+            try:
+                names, velocities = read_joint_velocities(message)
+                refusal = self._participant.subsystem.commands.say(names, velocities)  # type: ignore[attr-defined]
+            except CdrError as err:
+                refusal = str(err)
+            if refusal:
+                self.node.get_logger().warn(
+                    f"{COMMAND_TOPIC} refused: {refusal}", throttle_duration_sec=1.0
+                )
+        self._command.waiting.clear()
+
+    def _decode(self, step: int) -> Signals:
+        if step == 0:
+            return {}
+        time_ns = step * self._step_ns
+        inputs = {}
+        for inbox, lag, template in self._inputs:
+            values = template.decode(inbox.pop(time_ns - lag))
+            if not np.isfinite(values).all():
+                raise ValueError(
+                    f"{inbox.topic.name} at {time_ns / 1e9:.3f} s holds {values.tolist()}, expected finite numbers"
+                )
+            inputs[inbox.topic.name] = values
+        return inputs
+
+    def _publish(self, step: int, out: Signals) -> None:
+        time_ns = step * self._step_ns
+        spent = self._spent
+        for name, values in out.items():
+            began = time.perf_counter_ns()
+            message = self._templates[name].encode(time_ns, values)
+            encoded = time.perf_counter_ns()
+            self._publishers[name].publish(message)
+            spent["encode"] += encoded - began
+            spent["publish"] += time.perf_counter_ns() - encoded
+
+    def _report(self) -> None:
+        steps = self._participant.step
+        write_result(
+            self._run_dir,
+            self.name,
+            {
+                "steps": steps,
+                "digest": self._participant.digest,
+                "us_per_step": {kind: ns / 1000 / max(steps, 1) for kind, ns in self._spent.items()},
+            },
+        )
+
+
+def warm_up(name: str, scenario: Scenario) -> None:
+    """Compile (or load from the cache) every kernel that the subsystem uses, so that no step waits for it."""
+    early = dataclasses.replace(scenario, dp=dataclasses.replace(scenario.dp, enabled_at_s=0.0))
+    signals: dict[str, np.ndarray] = {}
+    for other in CHAIN:
+        signals.update(make_subsystem(other, early).start())
+    scratch = make_subsystem(name, early)
+    scratch.step(1, {topic: signals[topic] for topic in INPUTS[name]})
+
+
+def run_subsystem(name: str) -> None:
+    """Run a subsystem's node until it is told to stop."""
+
+    def body(stop: StopFlag) -> None:
+        runner = SubsystemNode(name, stop)
+        try:
+            runner.run()
+        finally:
+            runner.close()
+
+    run_node(body)
