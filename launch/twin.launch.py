@@ -1,45 +1,44 @@
-"""Start the six nodes of the twin; the end of any of them ends them all."""
+"""Start the nodes of the twin; the end of any of them ends them all."""
 
 from time import strftime
 
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, Shutdown
-from launch.substitutions import LaunchConfiguration
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
 
 ARGUMENTS = {
     "scenario": ("case2", "scenario: a name in config/scenarios or the path of a file"),
-    "speed": ("0.0", "simulated seconds per second of wall clock; 0 is as fast as possible"),
-    "record": (strftime("runs/launch-%Y%m%d-%H%M%S"), "folder that the recorder writes"),
+    "speed": ("0", "simulated seconds per second of wall clock; 0 is as fast as it goes"),
+    "record": (strftime("runs/launch-%Y%m%d-%H%M%S"), "folder for bag and results; none: do not record"),
 }
 
 
-def generate_launch_description():
-    """Return the arguments and the nodes; ROS_DOMAIN_ID and discovery come from the environment."""
-    scenario = ParameterValue(LaunchConfiguration("scenario"), value_type=str)
-    extra = {
-        # The clock comes last: it starts the run once it sees the others.
-        "environment": {},
-        "vessel": {},
-        "crane": {},
-        "payload": {},
-        "recorder": {"out": ParameterValue(LaunchConfiguration("record"), value_type=str)},
-        "clock": {"speed": ParameterValue(LaunchConfiguration("speed"), value_type=float)},
-    }
-    arguments = [
-        DeclareLaunchArgument(name, default_value=default, description=text)
-        for name, (default, text) in ARGUMENTS.items()
-    ]
-    nodes = [
+def start_nodes(context):
+    """Return the node actions for the arguments' values."""
+    values = context.launch_configurations
+    run_dir = "" if values["record"] == "none" else values["record"]
+    shared = {"scenario": values["scenario"], "run_dir": run_dir, "recorded": bool(run_dir)}
+    own = {name: {} for name in ("environment", "vessel", "crane", "payload")}
+    own["clock"] = {"speed": float(values["speed"])}
+    if run_dir:
+        own["recorder"] = {"out": run_dir}
+    return [
         Node(
             package="shipcrane_twin",
             executable=name,
             name=name,
             output="screen",
-            parameters=[{"scenario": scenario, **parameters}],
+            parameters=[{**shared, **parameters}],
             on_exit=Shutdown(reason=f"{name} has ended"),
         )
-        for name, parameters in extra.items()
+        for name, parameters in own.items()
     ]
-    return LaunchDescription(arguments + nodes)
+
+
+def generate_launch_description():
+    """Return the arguments and the nodes; ROS_DOMAIN_ID and discovery come from the environment."""
+    arguments = [
+        DeclareLaunchArgument(name, default_value=default, description=text)
+        for name, (default, text) in ARGUMENTS.items()
+    ]
+    return LaunchDescription([*arguments, OpaqueFunction(function=start_nodes)])

@@ -45,7 +45,7 @@ def test_every_requirement_has_both_bounds_or_one_exact_version():
 
 
 def test_manifest_names_every_ros_package_that_is_imported():
-    packages = {"rclpy", "launch", "launch_ros", "std_srvs"}
+    packages = {"rclpy", "rcl_interfaces", "builtin_interfaces", "launch", "launch_ros", "std_srvs"}
     imported = set()
     for path in [*ROOT.glob("shipcrane_twin/**/*.py"), *ROOT.glob("launch/*.py")]:
         for line in path.read_text(encoding="utf-8").splitlines():

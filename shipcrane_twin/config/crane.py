@@ -128,7 +128,7 @@ class WinchConfig:
 
 @settings
 class PayloadConfig:
-    """What hangs on the wire: the hook stays when the load is released."""
+    """What hangs on the wire: ``mass_kg`` with the hook, ``hook_mass_kg`` after the load is released."""
 
-    mass_kg: NotNegative
+    mass_kg: Positive
     hook_mass_kg: Positive

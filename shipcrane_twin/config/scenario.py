@@ -197,9 +197,14 @@ def operation_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
 
 
 def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
-    """Check the order of the winch's lengths."""
-    winch = scenario.winch
+    """Check the order of the winch's lengths and of the masses on the hook."""
+    winch, payload = scenario.winch, scenario.payload
+    found: list[tuple[list[str | int], str]] = []
     if not winch.length_min_m <= winch.initial_length_m <= winch.length_max_m:
         limits = f"{winch.length_min_m:g} to {winch.length_max_m:g}"
-        return [(["winch", "initial_length_m"], f"expected a length within the winch's limits, {limits}")]
-    return []
+        found.append((["winch", "initial_length_m"], f"expected a length within the winch's limits, {limits}"))
+    if payload.hook_mass_kg > payload.mass_kg:
+        found.append(
+            (["payload", "hook_mass_kg"], f"expected no more than payload.mass_kg = {payload.mass_kg:g}, a part of it")
+        )
+    return found

@@ -82,6 +82,8 @@ def wire(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     if tension is None:
         return None
     winch = signals.joints.get("/winch/joint_states")
+    if winch is not None and not winch.names:
+        winch = None
     figure, grid = style.time_axes(2 if winch is not None else 1)
     style.line(grid[0][0], *tension, style.BLUE)
     style.finish(grid[0][0], "wire tension [kN]", 0.5)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -129,24 +129,26 @@ def legend(axes: Axes) -> None:
 
 
 def mark_operations(columns: Sequence[Sequence[Axes]], operations: Sequence[Operation]) -> None:
-    """Shade the operations in stacks of axes (top to bottom), tag them on top and explain the tags below."""
+    """Shade the operations in stacks of axes (top to bottom), tag them on top and explain the tags below.
+
+    A run that ended early shows only what it reached. Call this after all lines are drawn.
+    """
+    start, end = columns[0][0].get_xlim()
+    reached = [replace(move, to_s=min(move.to_s, end)) for move in operations if start <= move.from_s < end]
     for stack in columns:
         for axes in stack:
-            for move in operations:
+            for move in reached:
                 if move.to_s > move.from_s:
                     axes.axvspan(move.from_s, move.to_s, color=SHADE, alpha=0.18, linewidth=0, zorder=0)
                 else:
                     axes.axvline(move.from_s, color=INK, linewidth=0.8, linestyle=(0, (2, 2)), zorder=1)
-        start, end = stack[0].get_xlim()
-        for middle, tag in _tags(operations, apart_s=0.025 * (end - start)):
-            _note(stack[0], middle, tag, fontweight="bold", annotation_clip=True)
+        for middle, tag in _tags(reached, apart_s=0.025 * (end - start)):
+            _note(stack[0], middle, tag, fontweight="bold")
         stack[-1].set_xlabel("time [s]", fontsize=FONT, color=INK)
-    if operations:
-        words = {f"{move.tag}\u00a0{move.label.replace(' ', chr(0xA0))}" for move in operations}
-        text = "   ".join(sorted(words, key=_natural))
-        columns[0][0].get_figure().supxlabel(  # type: ignore[union-attr]
-            "\n".join(textwrap.wrap(text, 120)), fontsize=SMALL, color=INK
-        )
+    if reached:
+        words = {f"{move.tag}\u00a0{move.label.replace(' ', chr(0xA0))}" for move in reached}
+        key = "\n".join(textwrap.wrap("   ".join(sorted(words, key=_natural)), 120))
+        columns[0][0].figure.supxlabel(key, fontsize=SMALL, color=INK)
 
 
 def _tags(operations: Sequence[Operation], apart_s: float) -> list[tuple[float, str]]:

@@ -55,6 +55,7 @@ pre {{ overflow-x: auto; font: .8rem/1.45 ui-monospace, "DejaVu Sans Mono", mono
   :root {{ --ink: #000; --soft: #444; --paper: #fff; --card: #fff; --rule: #ccc; --warn: #b3400c; }}
   body {{ max-width: none; padding: 0; font-size: .85rem; }}
   section, figure {{ border: 0; padding: 0; break-inside: avoid; }}
+  img {{ width: auto; max-width: 100%; max-height: 10.5cm; padding: 0; }}
   details {{ display: none; }}
 }}
 </style>

@@ -20,7 +20,7 @@ from shipcrane_twin.cosim.topics import BY_NAME
 from shipcrane_twin.ros.cdr import Template
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
 from shipcrane_twin.ros.parameters import declare, declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, write_result
+from shipcrane_twin.ros.process import StopFlag, leave_graph, write_result
 from shipcrane_twin.ros.subsystem_node import DONE_TOPIC, SERVICE_PERIOD_S, step_listeners
 
 STATUS_PERIOD_S = 0.25
@@ -111,8 +111,7 @@ class ClockNode:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._executor.shutdown()
-        self.node.destroy_node()
+        leave_graph(self.node)
 
     def _connect(self) -> None:
         while not self._stop:

@@ -16,7 +16,7 @@ from shipcrane_twin.record.collector import StepCollector
 from shipcrane_twin.ros.cdr import Template, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
 from shipcrane_twin.ros.parameters import declare, declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, write_result
+from shipcrane_twin.ros.process import StopFlag, leave_graph, write_result
 from shipcrane_twin.ros.subsystem_node import SERVICE_PERIOD_S
 
 PAUSE_S = 0.004
@@ -100,8 +100,7 @@ class RecorderNode:
                 "us_per_step": {"record": self._busy_ns / 1000 / steps},
             },
         )
-        self._executor.shutdown()
-        self.node.destroy_node()
+        leave_graph(self.node)
 
     def _drain(self) -> None:
         """Take all that has arrived."""

@@ -16,7 +16,7 @@ from shipcrane_twin.cosim.topics import BY_NAME, published_by
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
 from shipcrane_twin.ros.parameters import declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, run_node, write_result
+from shipcrane_twin.ros.process import StopFlag, leave_graph, run_node, write_result
 
 COMMAND_TOPIC = "/crane/joint_command"
 DONE_TOPIC = {name: [t.name for t in published_by(name) if t.rate == "step"][-1] for name in CHAIN}
@@ -108,8 +108,7 @@ class SubsystemNode:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._executor.shutdown()
-        self.node.destroy_node()
+        leave_graph(self.node)
 
     def _connect(self) -> None:
         """Wait until everyone who must hear this node is connected."""

@@ -110,12 +110,11 @@ def builder(topic):
     }[topic.type]
 
 
-def write_bag(bag_dir, topics, chunk_s=2.0):
+def write_bag(bag_dir, topics, chunk_s=2.0, as_given=False):
     """Write ``topics``: name -> list of (log_ns, message); zstd chunks, topics interleaved in time."""
-    rows = sorted(
-        ((log_ns, name, message) for name, messages in topics.items() for log_ns, message in messages),
-        key=lambda row: row[0],
-    )
+    rows = [(log_ns, name, message) for name, messages in topics.items() for log_ns, message in messages]
+    if not as_given:
+        rows.sort(key=lambda row: row[0])
     writer = Writer(bag_dir, version=9, storage_plugin=StoragePlugin.MCAP)
     writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
     with writer:

@@ -108,8 +108,21 @@ def test_a_run_of_a_single_moment_can_be_drawn(run):
     """A run that was stopped at t = 0."""
     scenario, signals = run
     series = {name: first(1, series) for name, series in signals.series.items()}
-    for plot in make_figures(replace(signals, series=series), scenario):
+    winch = replace(signals.joints["/winch/joint_states"], names=(), position=np.empty((0, 0)))
+    joints = dict(signals.joints) | {"/winch/joint_states": winch}
+    for plot in make_figures(replace(signals, series=series, joints=joints), scenario):
         assert png_bytes(plot.figure).startswith(b"\x89PNG")
+
+
+def test_a_run_that_ended_early_shows_only_what_it_reached(run):
+    scenario, signals = run
+    moves = [{"label": name, "from_s": a, "to_s": b} for name, a, b in (("lift", 10, 20), ("slew", 30, 60))]
+    late = {"label": "land", "from_s": 50, "to_s": 60}
+    plot = make_figures(signals, scenario | {"operations": [*moves, late], "events": None})[0]
+    assert {axes.get_xlim() for axes in plot.figure.axes} == {(0.0, 40.0)}
+    texts = " ".join(text.get_text() for text in plot.figure.findobj(Text))
+    assert "slew" in texts
+    assert "land" not in texts
 
 
 def test_operations_and_events_come_in_order_with_their_tags():

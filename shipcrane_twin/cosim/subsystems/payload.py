@@ -28,7 +28,7 @@ class Payload:
         self._hook_mass = scenario.payload.hook_mass_kg
 
         rest = at_rest(scenario)
-        mass = scenario.payload.mass_kg + self._hook_mass
+        mass = scenario.payload.mass_kg
         self._state = hanging_state(self._params, rest.tip_w, np.zeros(3), scenario.winch.initial_length_m, mass)
         self._tip = np.concatenate((rest.tip_w, np.zeros(3)))
         self._force_w = rest.wire_force_w

@@ -1,0 +1,107 @@
+"""The inline run with the same recording as the graph's; imports no ROS."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shipcrane_twin import __version__
+from shipcrane_twin.config.load import scenario_yaml
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim.inline import InlineRun
+from shipcrane_twin.cosim.topics import DIAGNOSTICS, TOPICS
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.record.bag import BagWriter
+from shipcrane_twin.record.collector import StepCollector
+from shipcrane_twin.ros.cdr import Template
+
+PROGRESS_STEPS = 250
+_NO_VALUES = np.empty(0)
+
+
+class InlineRecorder:
+    """Writes every output of an inline run to a bag, as the recorder node would.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    folder : Path
+        Of the run; ``bag/`` is made in it.
+    """
+
+    def __init__(self, scenario: Scenario, folder: Path) -> None:
+        topics = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
+        self._templates = {topic.name: Template(topic) for topic in topics if topic.type != DIAGNOSTICS}
+        self._bag = BagWriter(
+            folder / "bag",
+            topics,
+            compression=scenario.recording.compression,
+            chunk_kib=scenario.recording.chunk_kib,
+            metadata={"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},
+        )
+        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+
+    def take(self, time_ns: int, topic: str, values: Array) -> None:
+        """Record one output."""
+        self._collector.add(topic, time_ns, self._templates[topic].encode(time_ns, values))
+
+    def tick(self, time_ns: int) -> None:
+        """Record the clock."""
+        self.take(time_ns, "/clock", _NO_VALUES)
+
+    def close(self) -> None:
+        """Finish the bag."""
+        self._collector.flush()
+        self._bag.close()
+
+
+def run_inline(
+    scenario: Scenario, folder: Path, record: bool, progress: Callable[[dict[str, Any]], None]
+) -> dict[str, Any]:
+    """Run a scenario in this process and return what the summary needs of the run itself.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    folder : Path
+        Of the run.
+    record : bool
+    progress : callable
+        Gets a status like the clock's, a few times a second.
+
+    Returns
+    -------
+    dict
+        steps, wall_time_s, state_digest, physics_s (wall time without recording is wall_time_s minus record_s).
+    """
+    recorder = InlineRecorder(scenario, folder) if record else None
+    record_s = 0.0
+
+    def sink(time_ns: int, topic: str, values: Array) -> None:
+        nonlocal record_s
+        assert recorder is not None
+        began = time.perf_counter()
+        recorder.take(time_ns, topic, values)
+        record_s += time.perf_counter() - began
+
+    run = InlineRun(scenario, sink if recorder else None)
+    step_s = scenario.step_ns / 1e9
+    began = time.perf_counter()
+    done = -1
+    try:
+        for done in run.steps():
+            if done == 1:
+                began, record_s = time.perf_counter(), 0.0  # the first steps may have compiled kernels
+            if recorder is not None:
+                recorder.tick(done * scenario.step_ns)
+            if done % PROGRESS_STEPS == 0:
+                elapsed = max(1e-9, time.perf_counter() - began)
+                factor = done * step_s / elapsed
+                progress({"state": "running", "time_s": done * step_s, "real_time_factor": factor, "silent": []})
+    finally:
+        wall_s = time.perf_counter() - began
+        if recorder is not None:
+            recorder.close()
+    return {"steps": done, "wall_time_s": wall_s, "state_digest": run.digest, "record_s": record_s}

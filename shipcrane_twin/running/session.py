@@ -1,0 +1,132 @@
+"""One run from start to report, and its summary."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from shipcrane_twin import __version__
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.config.settings import plain
+from shipcrane_twin.cosim.participant import state_digest
+from shipcrane_twin.record.read import read_signals
+from shipcrane_twin.report.page import write_report
+from shipcrane_twin.report.summary import find_gaps, summarise
+from shipcrane_twin.running.folder import node_results
+from shipcrane_twin.running.graph import Graph, GraphOptions, NodeFailure
+from shipcrane_twin.running.local import run_inline
+
+Mode = Literal["graph", "inline"]
+Progress = Callable[[dict[str, Any]], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a run came to.
+
+    Attributes
+    ----------
+    summary : dict
+        As in summary.json.
+    report : Path or None
+        The page, where a bag was written.
+    failure : str
+        Why the run is not good; empty if it is.
+    interrupted : bool
+        Stopped by the user.
+    """
+
+    summary: dict[str, Any]
+    report: Path | None
+    failure: str = ""
+    interrupted: bool = False
+
+
+def run_scenario(scenario: Scenario, folder: Path, mode: Mode, record: bool, progress: Progress) -> Outcome:
+    """Run a scenario and write summary.json, report.html and figures into its folder.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    folder : Path
+        Made by `make_run_folder`.
+    mode : str
+        ``graph`` or ``inline``.
+    record : bool
+    progress : callable
+        Gets the run's status a few times a second.
+    """
+    failure, interrupted = "", False
+    result: dict[str, Any] = {"steps": 0, "wall_time_s": 0.0, "state_digest": ""}
+    try:
+        if mode == "inline":
+            result = run_inline(scenario, folder, record, progress)
+        else:
+            Graph(GraphOptions(folder, record)).run(progress)
+    except NodeFailure as err:
+        failure = str(err)
+    except KeyboardInterrupt:
+        interrupted = True
+    if mode == "graph":
+        result = graph_result(folder)
+    return conclude(scenario, folder, mode, record, result, failure, interrupted)
+
+
+def graph_result(folder: Path) -> dict[str, Any]:
+    """Return steps, wall time and digest of a graph run from what its nodes wrote."""
+    nodes = node_results(folder)
+    digests = {name: result["digest"] for name, result in nodes.items() if "digest" in result}
+    clock = nodes.get("clock", {"steps": 0, "wall_time_s": 0.0})
+    return {
+        "steps": max(0, clock["steps"]),
+        "wall_time_s": clock["wall_time_s"],
+        "state_digest": state_digest(digests),
+    }
+
+
+def conclude(
+    scenario: Scenario,
+    folder: Path,
+    mode: Mode,
+    record: bool,
+    result: dict[str, Any],
+    failure: str,
+    interrupted: bool,
+) -> Outcome:
+    """Sum a run up from its bag, write summary and report."""
+    simulated_s = result["steps"] * scenario.step_ns / 1e9
+    wall_s = result["wall_time_s"]
+    summary: dict[str, Any] = {
+        "scenario": scenario.name,
+        "title": scenario.title,
+        "version": __version__,
+        "seed": scenario.seed,
+        "mode": mode,
+        "coupling": scenario.coupling,
+        "macro_step_ms": scenario.macro_step_ms,
+        "sim_duration_s": simulated_s,
+        "wall_time_s": wall_s,
+        "real_time_factor": simulated_s / wall_s if wall_s > 0.0 else 0.0,
+        "state_digest": result["state_digest"],
+        "complete": not failure and not interrupted,
+    }
+    report = None
+    if record:
+        signals = read_signals(folder / "bag")
+        summary |= summarise(signals, plain(scenario))
+        gaps = find_gaps(
+            signals,
+            end_s=simulated_s,
+            macro_step_ms=scenario.macro_step_ms,
+            telemetry_period_ms=scenario.telemetry_period_ms,
+        )
+        if gaps and summary["complete"]:
+            failure = "the bag is not complete: " + "; ".join(map(str, gaps))
+        summary["gaps"] = [str(gap) for gap in gaps]
+    if failure:
+        summary["failure"] = failure
+    (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+    if record:
+        report = write_report(folder)
+    return Outcome(summary, report, failure, interrupted)
