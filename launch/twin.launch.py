@@ -21,7 +21,7 @@ def start_nodes(context):
     own = {name: {} for name in ("environment", "vessel", "crane", "payload")}
     own["clock"] = {"speed": float(values["speed"])}
     if run_dir:
-        own["recorder"] = {"out": run_dir}
+        own["recorder"] = {}
     return [
         Node(
             package="shipcrane_twin",

@@ -1,11 +1,12 @@
 """The vessel node: ``ros2 run shipcrane_twin vessel --ros-args -p scenario:=case2``."""
 
+from shipcrane_twin.nodes import STOP
 from shipcrane_twin.ros.subsystem_node import run_subsystem
 
 
 def main() -> None:
     """Run the node until it is told to stop."""
-    run_subsystem("vessel")
+    run_subsystem("vessel", STOP)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """The clock: announces simulated time when everyone is ready for it, paces it, and names who is silent."""
 
-import json
 import time
 from pathlib import Path
 
@@ -20,7 +19,8 @@ from shipcrane_twin.cosim.topics import BY_NAME
 from shipcrane_twin.ros.cdr import Template
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
 from shipcrane_twin.ros.parameters import declare, declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, leave_graph, write_result
+from shipcrane_twin.ros.process import leave_graph, write_json, write_result
+from shipcrane_twin.ros.stop import StopFlag
 from shipcrane_twin.ros.subsystem_node import DONE_TOPIC, SERVICE_PERIOD_S, step_listeners
 
 STATUS_PERIOD_S = 0.25
@@ -77,6 +77,7 @@ class ClockNode:
 
     def run(self) -> None:
         """Announce time until the end of the scenario."""
+        self._stop.arm()
         self._connect()
         if self._stop:
             return
@@ -85,6 +86,7 @@ class ClockNode:
         self._began = self._progress_at = now
         self._rate_from = (now, 0)
         self._pace.restart(0, now)
+        cpu_from = time.process_time()
         self._state = "running"
         self._announce(0)
         while not self._stop and not lockstep.finished:
@@ -106,7 +108,12 @@ class ClockNode:
         write_result(
             self._run_dir,
             "clock",
-            {"steps": lockstep.slowest, "wall_time_s": now - self._began, "worst_step_s": self._worst_s},
+            {
+                "steps": lockstep.slowest,
+                "wall_time_s": now - self._began,
+                "worst_step_s": self._worst_s,
+                "cpu_s": time.process_time() - cpu_from,
+            },
         )
 
     def close(self) -> None:
@@ -179,9 +186,7 @@ class ClockNode:
             "silent": self._silent,
         }
         if self._run_dir:
-            part = Path(self._run_dir) / ".status.part"
-            part.write_text(json.dumps(status), encoding="utf-8")
-            part.replace(part.with_name("status.json"))
+            write_json(Path(self._run_dir) / "status.json", status)
         if now > self._diagnostics_at or state == "done":
             self._diagnostics_at = now + DIAGNOSTICS_PERIOD_S
             self._publish_diagnostics(status)

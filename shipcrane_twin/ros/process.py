@@ -2,12 +2,10 @@
 
 import json
 import os
-import signal
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
 from typing import Any, NoReturn
 
 import rclpy
@@ -15,52 +13,30 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.ros.shared_memory import remove_own
+from shipcrane_twin.ros.stop import StopFlag
 
 EXIT_BAD_INPUT = 2
 EXIT_FAILED = 3
 
 
-def prepare_environment() -> None:
-    """Set what rclpy reads when it is started; what the user set stays.
-
-    Nodes of one machine talk over loopback UDP: as fast as shared memory here, and nothing stays
-    behind in /dev/shm when a process is killed.
-    """
-    os.environ.setdefault("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
-    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-
-
-class StopFlag:
-    """Becomes true on SIGINT or SIGTERM."""
-
-    def __init__(self) -> None:
-        self.raised = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._raise)
-
-    def _raise(self, number: int, frame: FrameType | None) -> None:
-        self.raised = True
-
-    def __bool__(self) -> bool:
-        return self.raised
-
-
-def run_node(body: Callable[[StopFlag], None]) -> NoReturn:
+def run_node(body: Callable[[StopFlag], None], stop: StopFlag) -> NoReturn:
     """Run a node's body on a started rclpy and end the process; bad input gives one message and exit code 2.
 
     Parameters
     ----------
     body : callable
-        Gets the stop flag and returns when it is raised or the work is done; its endpoints are gone then.
+        Gets the stop flag, arms it when it has something to finish, and returns when it is raised or the
+        work is done; its endpoints are gone then.
+    stop : StopFlag
 
     Notes
     -----
     The process ends without taking rclpy apart: Fast DDS can wait for itself forever when a participant is
     deleted while another one leaves, as at the end of every run. Nothing is lost: endpoints have been
-    removed one by one, and UDP leaves no files.
+    removed one by one, and the files in shared memory are removed here.
     """
-    prepare_environment()
-    stop = StopFlag()
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     code = 0
     try:
@@ -73,6 +49,7 @@ def run_node(body: Callable[[StopFlag], None]) -> NoReturn:
         code = EXIT_FAILED
     sys.stdout.flush()
     sys.stderr.flush()
+    remove_own()
     os._exit(code)
 
 
@@ -90,8 +67,12 @@ def write_result(run_dir: str, name: str, result: dict[str, Any]) -> None:
     """Write a node's result as ``nodes/NAME.json`` of the run folder, whole or not at all."""
     if not run_dir:
         return
-    folder = Path(run_dir) / "nodes"
-    folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f".{name}.part"
-    part.write_text(json.dumps(result), encoding="utf-8")
-    part.replace(folder / f"{name}.json")
+    write_json(Path(run_dir) / "nodes" / f"{name}.json", result)
+
+
+def write_json(path: Path, content: dict[str, Any]) -> None:
+    """Write a JSON file so that a reader finds the old or the new one, never a part."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(json.dumps(content), encoding="utf-8")
+    part.replace(path)

@@ -15,8 +15,9 @@ from shipcrane_twin.record.bag import BagWriter
 from shipcrane_twin.record.collector import StepCollector
 from shipcrane_twin.ros.cdr import Template, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
-from shipcrane_twin.ros.parameters import declare, declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, leave_graph, write_result
+from shipcrane_twin.ros.parameters import declare_run_parameters
+from shipcrane_twin.ros.process import leave_graph, write_result
+from shipcrane_twin.ros.stop import StopFlag
 from shipcrane_twin.ros.subsystem_node import SERVICE_PERIOD_S
 
 PAUSE_S = 0.004
@@ -27,7 +28,7 @@ _NO_VALUES = np.empty(0)
 
 
 class RecorderNode:
-    """Records the twin's topics into ``OUT/bag``.
+    """Records the twin's topics into ``bag/`` of the run's folder.
 
     Parameters
     ----------
@@ -38,14 +39,14 @@ class RecorderNode:
         self._stop = stop
         self.node = Node("recorder")
         run = declare_run_parameters(self.node)
-        out = declare(self.node, "out", run.run_dir, "Folder in which bag/ is written; empty is the run's")
         scenario = load_scenario(run.scenario)
         self._run_dir = run.run_dir
         self._step_ns, self._last = scenario.step_ns, scenario.step_count
         topics = tuple(topic for topic in TOPICS if topic.name != PROGRESS)
+        stop.arm()
         try:
             self._bag = BagWriter(
-                Path(out or ".") / "bag",
+                Path(run.run_dir or ".") / "bag",
                 topics,
                 compression=scenario.recording.compression,
                 chunk_kib=scenario.recording.chunk_kib,
@@ -65,10 +66,12 @@ class RecorderNode:
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)
         self._busy_ns = 0
+        self._cpu_s = 0.0
 
     def run(self) -> None:
         """Record until told to stop."""
         service_at = 0.0
+        cpu_from = time.process_time()
         told = -1
         while not self._stop:
             arrived = self._mail.wait(SERVICE_PERIOD_S)
@@ -85,6 +88,7 @@ class RecorderNode:
             if arrived:
                 time.sleep(PAUSE_S)
         self._drain()
+        self._cpu_s = time.process_time() - cpu_from
 
     def close(self) -> None:
         """Finish the bag and leave the graph."""
@@ -97,6 +101,7 @@ class RecorderNode:
             {
                 "steps": self._collector.complete,
                 "messages": sum(self._bag.counts.values()),
+                "cpu_s": self._cpu_s,
                 "us_per_step": {"record": self._busy_ns / 1000 / steps},
             },
         )

@@ -16,7 +16,8 @@ from shipcrane_twin.cosim.topics import BY_NAME, published_by
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
 from shipcrane_twin.ros.parameters import declare_run_parameters
-from shipcrane_twin.ros.process import StopFlag, leave_graph, run_node, write_result
+from shipcrane_twin.ros.process import leave_graph, run_node, write_result
+from shipcrane_twin.ros.stop import StopFlag
 
 COMMAND_TOPIC = "/crane/joint_command"
 DONE_TOPIC = {name: [t.name for t in published_by(name) if t.rate == "step"][-1] for name in CHAIN}
@@ -87,7 +88,9 @@ class SubsystemNode:
 
     def run(self) -> None:
         """Step until the end of the scenario, then stay until told to stop."""
+        self._stop.arm()
         self._connect()
+        cpu_from = time.process_time()
         while not self._stop and self._participant.step < self._last:
             started = time.perf_counter_ns()
             step = self._participant.step + 1
@@ -102,7 +105,7 @@ class SubsystemNode:
             self._spent["wait"] += waited - started
             self._spent["decode"] += decoded - waited
             self._spent["physics"] += computed - decoded
-        self._report()
+        self._report(time.process_time() - cpu_from)
         while not self._stop:
             self._service(0.05)
 
@@ -187,7 +190,7 @@ class SubsystemNode:
             spent["encode"] += encoded - began
             spent["publish"] += time.perf_counter_ns() - encoded
 
-    def _report(self) -> None:
+    def _report(self, cpu_s: float) -> None:
         steps = self._participant.step
         write_result(
             self._run_dir,
@@ -195,6 +198,7 @@ class SubsystemNode:
             {
                 "steps": steps,
                 "digest": self._participant.digest,
+                "cpu_s": cpu_s,
                 "us_per_step": {kind: ns / 1000 / max(steps, 1) for kind, ns in self._spent.items()},
             },
         )
@@ -210,7 +214,7 @@ def warm_up(name: str, scenario: Scenario) -> None:
     scratch.step(1, {topic: signals[topic] for topic in INPUTS[name]})
 
 
-def run_subsystem(name: str) -> None:
+def run_subsystem(name: str, stop: StopFlag) -> None:
     """Run a subsystem's node until it is told to stop."""
 
     def body(stop: StopFlag) -> None:
@@ -220,4 +224,4 @@ def run_subsystem(name: str) -> None:
         finally:
             runner.close()
 
-    run_node(body)
+    run_node(body, stop)

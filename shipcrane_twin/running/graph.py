@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from shipcrane_twin.cosim.coupling import CHAIN
+from shipcrane_twin.ros.shared_memory import mapped_names, remove_orphans
 
 START_LIMIT_S = 120.0
 """Wall time for all nodes to find each other; kernels may have to be compiled first."""
@@ -56,6 +57,7 @@ class Graph:
     def __init__(self, options: GraphOptions) -> None:
         self._options = options
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
+        self._shared: set[str] = set()
 
     def run(self, progress: Progress) -> None:
         """Start all nodes, watch them until the clock is done, stop them.
@@ -84,6 +86,9 @@ class Graph:
         while True:
             status = read_status(self._options.folder)
             progress(status)
+            if status["state"] == "running" and not self._shared:
+                # a node that is killed cannot be asked later
+                self._shared = {name for process in self._processes.values() for name in mapped_names(process.pid)}
             for name, process in self._processes.items():
                 code = process.poll()
                 if name == "clock" and code == 0:
@@ -107,6 +112,7 @@ class Graph:
 
     def _stop(self) -> None:
         """Interrupt all but the recorder, then the recorder; kill what does not end."""
+        shared = {name for process in self._processes.values() for name in mapped_names(process.pid)}
         recorder = self._processes.pop("recorder", None)
         for group in (list(self._processes.values()), [recorder] if recorder else []):
             for process in group:
@@ -119,6 +125,7 @@ class Graph:
                 except subprocess.TimeoutExpired:
                     process.kill()
                     process.wait()
+        remove_orphans(shared | self._shared)
 
 
 def start_node(name: str, folder: Path, record: bool) -> subprocess.Popen[bytes]:
