@@ -88,6 +88,7 @@ TOPICS: tuple[Topic, ...] = (
         name="/environment/wind",
         type=TWIST,
         publisher="environment",
+        rate="telemetry",
         frame="map",
         about="Velocity of the air, ENU [m/s]; angular part zero.",
     ),

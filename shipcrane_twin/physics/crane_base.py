@@ -8,7 +8,9 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_chain import ChainParams, tip_state
+from shipcrane_twin.physics.crane_chain import ChainParams
+from shipcrane_twin.physics.crane_motion import ServoParams, crane_step
+from shipcrane_twin.physics.crane_reference import MotionLimits
 from shipcrane_twin.physics.frames import (
     cross,
     matrix_from_quat,
@@ -46,21 +48,96 @@ def base_motion(odom: Array, accel: Array, base_b: Array, gravity: float) -> Arr
 
 
 @njit(cache=True)
-def turned_force(odom: Array, force_w: Array) -> Array:
-    """Return a world force (3,) in base axes."""
-    return rotate_to_body(matrix_from_quat(odom[3:7]), force_w)
+def tip_odometry(tip_b: Array, odom: Array, base_b: Array) -> Array:
+    """Return the tip's odometry (13,): pose of crane_tip in the world, velocities in crane_tip axes.
+
+    Parameters
+    ----------
+    tip_b : float64, shape (18,)
+        Tip relative to crane_base, see `crane_chain.fill_tip`.
+    odom : float64, shape (13,)
+    base_b : float64, shape (3,)
+    """
+    rot = matrix_from_quat(odom[3:7])
+    arm_b = base_b + tip_b[:3]
+    tip_rot_b = tip_b[9:].copy().reshape((3, 3))
+    velocity_b = odom[7:10] + cross(odom[10:13], arm_b) + tip_b[3:6]
+    out = np.empty(13)
+    out[:3] = odom[:3] + rotate_to_world(rot, arm_b)
+    out[3:7] = quat_from_matrix(times(rot, tip_rot_b))
+    out[7:10] = rotate_to_body(tip_rot_b, velocity_b)
+    out[10:] = rotate_to_body(tip_rot_b, odom[10:13] + tip_b[6:9])
+    return out
 
 
 @njit(cache=True)
-def tip_odometry(chain: ChainParams, q: Array, qd: Array, odom: Array, base_b: Array) -> Array:
-    """Return the tip's odometry (13,): pose of crane_tip in the world, velocities in crane_tip axes."""
-    tip_b, tip_vel_b, tip_omega_b, tip_rot_b = tip_state(chain, q, qd)
-    rot = matrix_from_quat(odom[3:7])
-    arm_b = base_b + tip_b
-    velocity_b = odom[7:10] + cross(odom[10:13], arm_b) + tip_vel_b
-    out = np.empty(13)
-    out[:3] = odom[:3] + rotate_to_world(rot, arm_b)
-    out[3:7] = quat_from_matrix(rot @ tip_rot_b)
-    out[7:10] = rotate_to_body(tip_rot_b, velocity_b)
-    out[10:] = rotate_to_body(tip_rot_b, odom[10:13] + tip_omega_b)
+def crane_macro_step(
+    chain: ChainParams,
+    servo: ServoParams,
+    limits: MotionLimits,
+    base_b: Array,
+    gravity: float,
+    state: Array,
+    command: Array,
+    before: Array,
+    odom: Array,
+    accel: Array,
+    force_w: Array,
+    n_micro: int,
+    step_s: float,
+) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Move the crane over one macro step on the moving ship.
+
+    Parameters
+    ----------
+    chain, servo, limits : ChainParams, ServoParams, MotionLimits
+    base_b : float64, shape (3,)
+    gravity : float
+        [m/s2].
+    state, command : float64, shapes (4 n,), (n,)
+        See `crane_motion.crane_step`.
+    before : float64, shape (13,)
+        Quaternion of the ship and `base_motion` at the step's start.
+    odom, accel : float64, shapes (13,), (6,)
+        The ship at the step's end.
+    force_w : float64, shape (3,)
+        Force of the wire on the tip, held in the world over the step [N].
+    n_micro, step_s : int, float
+        Micro steps in the macro step, macro step [s].
+
+    Returns
+    -------
+    state, effort : float64, shapes (4 n,), (n,)
+        At the end of the step.
+    wrench_b : float64, shape (6,)
+        Mean over the step of crane and load on the ship at crane_base.
+    tip : float64, shape (13,)
+        Odometry of the tip at the end of the step.
+    inertia : float64, shape (10,)
+        The crane as one rigid body at the end of the step.
+    after : float64, shape (13,)
+        ``before`` of the next step.
+    """
+    after = np.empty(13)
+    after[:4] = odom[3:7]
+    after[4:] = base_motion(odom, accel, base_b, gravity)
+    start, end = np.empty(12), np.empty(12)
+    start[:9] = before[4:]
+    start[9:] = rotate_to_body(matrix_from_quat(before[:4]), force_w)
+    end[:9] = after[4:]
+    end[9:] = rotate_to_body(matrix_from_quat(after[:4]), force_w)
+    new, wrench_b, effort, _, tip_b, inertia = crane_step(
+        chain, servo, limits, state, command, start, end, n_micro, step_s
+    )
+    return new, effort, wrench_b, tip_odometry(tip_b, odom, base_b), inertia, after
+
+
+@njit(cache=True)
+def times(a: Array, b: Array) -> Array:
+    """Return the product of two matrices (3, 3)."""
+    out = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                out[i, j] += a[i, k] * b[k, j]
     return out

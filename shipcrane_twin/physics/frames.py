@@ -128,13 +128,14 @@ def rotate_to_body(rot: Array, vec_w: Array) -> Array:
 
 
 def yaw_from_heading(heading_deg: float) -> float:
-    """Return the ENU yaw [rad, in (-pi, pi]] of a heading in degrees clockwise from north."""
+    """Return the ENU yaw [rad, in [-pi, pi)] of a heading in degrees clockwise from north."""
     return float(wrap_angle(np.deg2rad(90.0 - heading_deg)))
 
 
 def heading_from_yaw(yaw: float) -> float:
     """Return the heading [deg, in [0, 360)] of an ENU yaw [rad]."""
-    return float((90.0 - np.rad2deg(yaw)) % 360.0)
+    heading = float((90.0 - np.rad2deg(yaw)) % 360.0)
+    return 0.0 if heading == 360.0 else heading  # the remainder of a tiny negative number rounds up
 
 
 def towards_w(direction_to_deg: float) -> Array:
@@ -156,4 +157,5 @@ def flu_matrix_from_frd(matrix_frd: Array) -> Array:
 @njit(cache=True)
 def wrap_angle(angle: float) -> float:
     """Return an angle [rad] brought into [-pi, pi)."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
+    wrapped = (angle + np.pi) % (2.0 * np.pi) - np.pi
+    return -np.pi if wrapped >= np.pi else wrapped  # the remainder of a tiny negative number rounds up

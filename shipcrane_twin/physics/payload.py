@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_world
 from shipcrane_twin.physics.wire import pull, wire_loss, wire_stiffness
 
 
@@ -183,3 +184,12 @@ def hanging_state(wire: WireParams, tip_pos_w: Array, tip_vel_w: Array, length: 
     state[6] = length
     state[8] = mass
     return state
+
+
+@njit(cache=True)
+def tip_motion(odom: Array) -> Array:
+    """Return position and velocity in the world (6,) of an odometry (13,) whose velocity is in body axes."""
+    out = np.empty(6)
+    out[:3] = odom[:3]
+    out[3:] = rotate_to_world(matrix_from_quat(odom[3:7]), odom[7:10])
+    return out

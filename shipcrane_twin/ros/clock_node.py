@@ -91,8 +91,10 @@ class ClockNode:
         self._announce(0)
         while not self._stop and not lockstep.finished:
             before = lockstep.slowest
-            for inbox in self._mail.wait(self._pace.wait_s(lockstep.announced, now, SERVICE_PERIOD_S)):
-                inbox.keep()
+            # the last of the chain has finished a step only when all have
+            self._mail.wait(
+                self._pace.wait_s(lockstep.announced, now, SERVICE_PERIOD_S), only=self._inboxes[CHAIN[-1]]
+            )
             self._hear()
             now = time.monotonic()
             if lockstep.slowest > before or lockstep.slowest >= lockstep.announced:
@@ -139,15 +141,18 @@ class ClockNode:
                 self._tell(now)
 
     def _hear(self) -> None:
+        """Take in how far everyone has come."""
+        lockstep = self._lockstep
         for name, inbox in self._inboxes.items():
-            if inbox.waiting:
-                self._lockstep.done[name] = max(self._lockstep.done[name], progress_of(inbox.waiting, self._step_ns))
-                inbox.waiting.clear()
-        if self._recorder.waiting:
-            self._lockstep.recorded_to = max(
-                self._lockstep.recorded_to, progress_of(self._recorder.waiting, self._step_ns)
-            )
-            self._recorder.waiting.clear()
+            lockstep.done[name] = max(lockstep.done[name], self._progress(inbox))
+        lockstep.recorded_to = max(lockstep.recorded_to, self._progress(self._recorder))
+
+    def _progress(self, inbox: Inbox) -> int:
+        while inbox.keep():
+            pass
+        progress = progress_of(inbox.waiting, self._step_ns)
+        inbox.waiting.clear()
+        return progress
 
     def _announce(self, upto: int) -> None:
         for step in range(self._lockstep.announced + 1, upto + 1):

@@ -74,10 +74,9 @@ class RecorderNode:
         cpu_from = time.process_time()
         told = -1
         while not self._stop:
-            arrived = self._mail.wait(SERVICE_PERIOD_S)
+            self._mail.wait(SERVICE_PERIOD_S)
             began = time.perf_counter_ns()
-            if arrived:
-                self._drain()
+            self._drain()
             if self._collector.complete > told:
                 told = self._collector.complete
                 self._publisher.publish(self._template.encode(told * self._step_ns, _NO_VALUES))
@@ -85,8 +84,7 @@ class RecorderNode:
             if time.monotonic() > service_at:
                 self._executor.spin_once(timeout_sec=0.0)
                 service_at = time.monotonic() + SERVICE_PERIOD_S
-            if arrived:
-                time.sleep(PAUSE_S)
+            time.sleep(PAUSE_S)
         self._drain()
         self._cpu_s = time.process_time() - cpu_from
 

@@ -1,6 +1,7 @@
 """The lockstep loop around one subsystem: wait by stamp, compute, publish."""
 
 import dataclasses
+import math
 import time
 
 import numpy as np
@@ -72,8 +73,7 @@ class SubsystemNode:
         self._command = (
             Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if hasattr(self._participant.subsystem, "commands") else None
         )
-        inboxes = [self._clock, *(inbox for inbox, _, _ in self._inputs)]
-        self._mail = Mailroom(self.node, inboxes + ([self._command] if self._command else []))
+        self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
         topics = published_by(name)
         self._templates = {topic.name: Template(topic) for topic in topics}
         self._publishers = {
@@ -132,28 +132,32 @@ class SubsystemNode:
     def _gather(self, step: int) -> bool:
         """Wait until the clock allows a step and all its inputs are here; False when told to stop."""
         time_ns = step * self._step_ns
-        while True:
-            if self._allowed >= time_ns and (
-                step == 0 or all(time_ns - lag in inbox.waiting for inbox, lag, _ in self._inputs)
-            ):
+        wanted = [(inbox, time_ns - lag) for inbox, lag, _ in self._inputs] if step else []
+        while not self._stop:
+            # backwards, because what a publisher sends last comes last
+            missing = next((inbox for inbox, stamp in reversed(wanted) if not inbox.has(stamp)), None)
+            if missing is None and not self._is_allowed(time_ns):
+                missing = self._clock
+            if missing is None:
+                self._obey()
                 return True
-            if self._stop:
-                return False
-            for inbox in self._mail.wait(SERVICE_PERIOD_S):
-                if not inbox.keep():
-                    continue
-                if inbox is self._clock:
-                    self._allowed = max(self._allowed, *inbox.waiting)
-                    inbox.waiting.clear()
-                elif inbox is self._command:
-                    self._obey()
+            self._mail.wait(SERVICE_PERIOD_S, only=missing)
             if time.monotonic() > self._service_at:
                 self._service(0.0)
+        return False
+
+    def _is_allowed(self, time_ns: int) -> bool:
+        """Whether the clock has announced a time."""
+        while self._allowed < time_ns and self._clock.keep():
+            self._allowed = max(self._allowed, *self._clock.waiting)
+            self._clock.waiting.clear()
+        return self._allowed >= time_ns
 
     def _obey(self) -> None:
-        """Hand an operator's command on; a wrong one is refused with a warning."""
-        assert self._command is not None
-        for message in self._command.waiting.values():
+        """Hand an operator's commands on; a wrong one is refused with a warning."""
+        if self._command is None:
+            return
+        while (message := self._command.take()) is not None:
             try:
                 names, velocities = read_joint_velocities(message)
                 refusal = self._participant.subsystem.commands.say(names, velocities)  # type: ignore[attr-defined]
@@ -163,7 +167,6 @@ class SubsystemNode:
                 self.node.get_logger().warn(
                     f"{COMMAND_TOPIC} refused: {refusal}", throttle_duration_sec=1.0
                 )
-        self._command.waiting.clear()
 
     def _decode(self, step: int) -> Signals:
         if step == 0:
@@ -172,7 +175,7 @@ class SubsystemNode:
         inputs = {}
         for inbox, lag, template in self._inputs:
             values = template.decode(inbox.pop(time_ns - lag))
-            if not np.isfinite(values).all():
+            if not math.isfinite(values.sum()):
                 raise ValueError(
                     f"{inbox.topic.name} at {time_ns / 1e9:.3f} s holds {values.tolist()}, expected finite numbers"
                 )

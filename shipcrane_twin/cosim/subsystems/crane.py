@@ -11,16 +11,11 @@ from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import seconds
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_base import base_motion, tip_odometry, turned_force
+from shipcrane_twin.physics.crane_base import base_motion, crane_macro_step, tip_odometry
+from shipcrane_twin.physics.crane_chain import tip_state
 from shipcrane_twin.physics.crane_cylinders import TRIANGLE, joint_rates_per_length, lengths_from_joints
 from shipcrane_twin.physics.crane_dynamics import base_wrench
-from shipcrane_twin.physics.crane_inertia import composite_inertia
-from shipcrane_twin.physics.crane_motion import (
-    ServoParams,
-    crane_step,
-    servo_gains,
-    static_reference,
-)
+from shipcrane_twin.physics.crane_motion import ServoParams, servo_gains, static_reference
 from shipcrane_twin.physics.crane_reference import make_limits
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
 
@@ -63,11 +58,14 @@ class Crane:
         zeros = np.zeros_like(q)
         self._state = np.concatenate((q, zeros, held, zeros))
         self._effort = kp * (held - q)
+        odom = np.zeros(13)
+        odom[:3] = rest.tip_w - rot @ (self._base + rest.tip_b)
+        odom[3:7] = rest.vessel[3:7]
+        self._before = np.concatenate((odom[3:7], base_motion(odom, np.zeros(6), self._base, self._gravity)))
+        tip_b = np.concatenate([part.ravel() for part in tip_state(self._chain, q, zeros)])
+        self._tip = tip_odometry(tip_b, odom, self._base)
         self._wrench = base_wrench(self._chain, q, zeros, zeros, still, still, proper_b, force_b)
-        self._odom = np.zeros(13)
-        self._odom[:3] = rest.tip_w - rot @ (self._base + rest.tip_b)
-        self._odom[3:7] = rest.vessel[3:7]
-        self._motion = base_motion(self._odom, np.zeros(6), self._base, self._gravity)
+        self._inertia = rest.inertia
 
     def start(self) -> Signals:
         """Return the crane at rest at t = 0."""
@@ -75,36 +73,33 @@ class Crane:
 
     def step(self, k: int, inputs: Signals) -> Signals:
         """Move the crane over step k: ship motion linear over the step, wire force held in the world."""
-        odom = inputs["/vessel/odom"]
-        force_w = inputs["/payload/wire_wrench"][:3]
-        motion = base_motion(odom, inputs["/vessel/accel"], self._base, self._gravity)
-        before = np.concatenate((self._motion, turned_force(self._odom, force_w)))
-        after = np.concatenate((motion, turned_force(odom, force_w)))
         self._command = self.commands.at((k - 1) * self._step_ns)
-        self._state, self._wrench, self._effort, *_ = crane_step(
+        self._state, self._effort, self._wrench, self._tip, self._inertia, self._before = crane_macro_step(
             self._chain,
             self._servo,
             self._limits,
+            self._base,
+            self._gravity,
             self._state,
             self._command,
-            before,
-            after,
+            self._before,
+            inputs["/vessel/odom"],
+            inputs["/vessel/accel"],
+            inputs["/payload/wire_wrench"][:3],
             self._micro,
             self._step_s,
         )
-        self._odom, self._motion = odom, motion
         return self._outputs(k)
 
     def _outputs(self, k: int) -> Signals:
-        n = len(self._command)
-        q, qd = self._state[:n], self._state[n : 2 * n]
         out = {
-            "/crane/tip": tip_odometry(self._chain, q, qd, self._odom, self._base),
+            "/crane/tip": self._tip,
             "/crane/base_wrench": self._wrench,
-            "/crane/base_inertia": composite_inertia(self._chain, q),
+            "/crane/base_inertia": self._inertia,
         }
         if k % self._telemetry_every == 0:
-            out["/crane/joint_states"] = self._joint_states(q, qd)
+            n = len(self._command)
+            out["/crane/joint_states"] = self._joint_states(self._state[:n], self._state[n : 2 * n])
             out["/crane/joint_command_applied"] = self._command
         return out
 

@@ -19,6 +19,7 @@ class Environment:
     def __init__(self, scenario: Scenario) -> None:
         env = scenario.environment
         self._params = build.wind_params(scenario)
+        self._telemetry_every = scenario.telemetry_every
         self._current = np.zeros(6)
         self._current[:3] = env.current_speed_m_s * towards_w(env.current_direction_to_deg)
         self._wind = np.zeros(6)
@@ -27,17 +28,19 @@ class Environment:
 
     def start(self) -> Signals:
         """Return the weather at t = 0."""
-        return self._outputs(self._quat, np.zeros(3))
+        return self._outputs(0, self._quat, np.zeros(3))
 
     def step(self, k: int, inputs: Signals) -> Signals:
         """Return the weather over step k; the ship's motion is that at the step's start."""
         odom = inputs["/vessel/odom"]
-        return self._outputs(odom[3:7], odom[7:10])
+        return self._outputs(k, odom[3:7], odom[7:10])
 
-    def _outputs(self, quat: Array, velocity_b: Array) -> Signals:
+    def _outputs(self, k: int, quat: Array, velocity_b: Array) -> Signals:
         air_b = rotate_to_body(matrix_from_quat(quat), self._wind[:3]) - velocity_b
-        return {
+        out = {
             "/environment/current": self._current,
-            "/environment/wind": self._wind,
             "/environment/wind_wrench": wind_load(self._params, air_b[0], air_b[1]),
         }
+        if k % self._telemetry_every == 0:
+            out["/environment/wind"] = self._wind
+        return out

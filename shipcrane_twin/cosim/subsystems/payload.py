@@ -8,8 +8,7 @@ from shipcrane_twin.cosim.commands import JointCommands
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import NS_PER_S, seconds
-from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_world
-from shipcrane_twin.physics.payload import hanging_state, payload_step
+from shipcrane_twin.physics.payload import hanging_state, payload_step, tip_motion
 
 
 class Payload:
@@ -45,9 +44,7 @@ class Payload:
             self._releases_ns.pop(0)
             self._state = self._state.copy()
             self._state[8] = self._hook_mass
-        tip = inputs["/crane/tip"]
-        velocity_w = rotate_to_world(matrix_from_quat(tip[3:7]), tip[7:10])
-        tip_next = np.concatenate((tip[:3], velocity_w))
+        tip_next = tip_motion(inputs["/crane/tip"])
         self._command = self.commands.at(time_ns)
         self._state, self._force_w, self._tension_max = payload_step(
             self._params, self._state, self._command[0], self._tip, tip_next, self._step_s
