@@ -68,7 +68,7 @@ def demo(
 @app.command()
 def check(scenario: ScenarioName, changes: SetOption = []) -> None:  # noqa: B006
     """Validate a scenario without running it."""
-    from shipcrane_twin.cosim.check import check_buildable  # noqa: PLC0415 - loads the kernels
+    from shipcrane_twin.cosim.check import check_buildable
 
     found = load_scenario(scenario, changes)
     check_buildable(found)
@@ -91,7 +91,7 @@ def list_command() -> None:
 @app.command()
 def report(folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a run, with bag/.")]) -> None:
     """Draw the report of a run again from its bag."""
-    from shipcrane_twin.report.page import write_report  # noqa: PLC0415 - loads matplotlib
+    from shipcrane_twin.report.page import write_report
 
     console.print(f"report: {write_report(folder)}", highlight=False, soft_wrap=True)
 
@@ -102,7 +102,7 @@ def bench(
     until: Annotated[float, typer.Option(metavar="S", help="Simulated time of each graph run [s].")] = 60.0,
 ) -> None:
     """Measure speed as a ratio to real time, inline and graph, with 10, 20 and 50 ms steps."""
-    from shipcrane_twin.running.bench import run_bench  # noqa: PLC0415 - loads the kernels
+    from shipcrane_twin.running.bench import run_bench
 
     run_bench(scenario, until, console)
 
@@ -120,8 +120,8 @@ def parse_speed(text: str) -> float:
 
 def execute(scenario: Scenario, mode: Literal["graph", "inline"], out: Path | None, record: bool) -> None:
     """Run a checked scenario with a progress line, print its summary and leave with its exit code."""
-    from shipcrane_twin.cosim.check import check_buildable  # noqa: PLC0415 - loads the kernels
-    from shipcrane_twin.running.session import run_scenario  # noqa: PLC0415 - loads the report
+    from shipcrane_twin.cosim.check import check_buildable
+    from shipcrane_twin.running.session import run_scenario
 
     check_buildable(scenario)
     folder = make_run_folder(scenario, out)
@@ -175,8 +175,8 @@ def print_summary(summary: dict[str, Any], folder: Path, page: Path | None) -> N
 def main() -> None:
     """Run the command line; a wrong input gives one message, never a traceback."""
     signal.signal(signal.SIGTERM, interrupt)
-    from shipcrane_twin.record.scan import BagError  # noqa: PLC0415
-    from shipcrane_twin.report.page import ReportError  # noqa: PLC0415
+    from shipcrane_twin.record.scan import BagError
+    from shipcrane_twin.report.page import ReportError
 
     try:
         app()

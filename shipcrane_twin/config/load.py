@@ -64,7 +64,7 @@ def known_names() -> str:
 def read_yaml(path: Path) -> dict[str, Any]:
     """Return a YAML file's mapping; ConfigError with the line if it cannot be read."""
     try:
-        data = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 - a SafeLoader
+        data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except yaml.YAMLError as err:
         raise ConfigError(f"{path}: not valid YAML: {' '.join(str(err).split())}") from None
     except (OSError, UnicodeDecodeError) as err:
@@ -102,7 +102,7 @@ def parse_override(text: str) -> tuple[list[str], Any]:
     if not equals or not key.strip():
         raise ConfigError(f"--set {text!r}: expected key=value, for instance macro_step_ms=50")
     try:
-        return key.strip().split("."), yaml.load(value, _Loader)  # noqa: S506 - a SafeLoader
+        return key.strip().split("."), yaml.load(value, _Loader)
     except yaml.YAMLError:
         raise ConfigError(f"--set {text!r}: the value is not valid YAML") from None
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from shipcrane_twin.config.crane import CraneConfig, DriveConfig
+from shipcrane_twin.config.crane import CraneConfig, DriveConfig, LinkConfig, TipConfig
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.control.dp import DpParams, allocation_matrix, pid_gains
 from shipcrane_twin.physics.arrays import Array
@@ -108,7 +108,8 @@ def symmetric(values: tuple[float, ...]) -> Array:
 
 def crane_chain(crane: CraneConfig) -> ChainParams:
     """Return the crane's links."""
-    rows = [(r.a_m, math.radians(r.alpha_deg), r.d_m, math.radians(r.theta_deg)) for r in (*crane.links, crane.tip)]
+    frames: list[LinkConfig | TipConfig] = [*crane.links, crane.tip]
+    rows = [(row.a_m, math.radians(row.alpha_deg), row.d_m, math.radians(row.theta_deg)) for row in frames]
     return make_chain(
         dh=rows,
         kind=[link.kind for link in crane.links],

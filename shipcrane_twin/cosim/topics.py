@@ -112,7 +112,7 @@ TOPICS: tuple[Topic, ...] = (
         type=ACCEL,
         publisher="vessel",
         frame="base_link",
-        about="Acceleration of base_link's origin, without gravity, and angular acceleration, base_link axes [m/s2, rad/s2].",
+        about="Acceleration of base_link's origin without gravity, angular acceleration; base_link axes [m/s2, rad/s2].",
     ),
     Topic(
         name="/crane/tip",

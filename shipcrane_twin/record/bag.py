@@ -100,7 +100,7 @@ class BagWriter:
 
     def close(self) -> None:
         """Finish the file and write metadata.yaml."""
-        self._writer.finish()
+        self._writer.finish()  # type: ignore[no-untyped-call]
         self._stream.close()
         text = yaml.safe_dump({"rosbag2_bagfile_information": self._information()}, sort_keys=False)
         part = self._folder / ".metadata.part"

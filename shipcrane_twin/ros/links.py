@@ -103,8 +103,10 @@ class Mailroom:
 
     def __init__(self, node: Node, inboxes: Iterable[Inbox]) -> None:
         self.inboxes = list(inboxes)
-        with node.context.handle:
-            self._wait_set = rcl.WaitSet(len(self.inboxes), 0, 0, 0, 0, 0, node.context.handle)
+        context = node.context.handle
+        assert context is not None  # rclpy has been started
+        with context:
+            self._wait_set = rcl.WaitSet(len(self.inboxes), 0, 0, 0, 0, 0, context)
 
     def wait(self, timeout_s: float, only: Inbox | None = None) -> None:
         """Wait until a message is there to be taken, from any inbox or from only one of them.

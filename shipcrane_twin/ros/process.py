@@ -42,9 +42,9 @@ def run_node(body: Callable[[StopFlag], None], stop: StopFlag) -> NoReturn:
     try:
         body(stop)
     except ConfigError as err:
-        print(f"error: {err}", file=sys.stderr)
+        sys.stderr.write(f"error: {err}\n")
         code = EXIT_BAD_INPUT
-    except Exception:
+    except Exception:  # noqa: BLE001 - a process ends here, whatever went wrong
         traceback.print_exc()
         code = EXIT_FAILED
     sys.stdout.flush()

@@ -28,4 +28,5 @@ class StopFlag:
             os._exit(0)
 
     def __bool__(self) -> bool:
+        """Whether the node should end."""
         return self.raised

@@ -70,9 +70,8 @@ class SubsystemNode:
             (Inbox(self.node, topic, group), scheme.lag(name, topic.publisher) * scenario.step_ns, Template(topic))
             for topic in map(BY_NAME.__getitem__, INPUTS[name])
         ]
-        self._command = (
-            Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if hasattr(self._participant.subsystem, "commands") else None
-        )
+        obeys = hasattr(self._participant.subsystem, "commands")
+        self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
         topics = published_by(name)
         self._templates = {topic.name: Template(topic) for topic in topics}

@@ -102,7 +102,9 @@ def test_joint_velocities_of_any_joint_state():
     assert velocities == [0.01, -0.5]
 
 
-@pytest.mark.parametrize("raw", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + b"\xff" * 40, struct.pack("<30d", *range(30))])
+@pytest.mark.parametrize(
+    "raw", [b"", b"\x00\x01\x00\x00", b"\x00\x01\x00\x00" + b"\xff" * 40, struct.pack("<30d", *range(30))]
+)
 def test_bytes_that_are_no_joint_state_are_an_error(raw):
     with pytest.raises(CdrError):
         read_joint_velocities(raw)

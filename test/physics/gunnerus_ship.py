@@ -1,0 +1,49 @@
+"""The ship of the scenarios and variants of it, for tests."""
+
+import numpy as np
+from palfinger import inertia_tensor
+
+from shipcrane_twin.config.load import load_scenario
+from shipcrane_twin.cosim.build import vessel_params
+from shipcrane_twin.physics.frames import quat_from_euler
+from shipcrane_twin.physics.vessel import VesselParams
+
+SCENARIO = load_scenario("case2")
+SHIP = vessel_params(SCENARIO)
+STILL_WATER = np.zeros(3)
+NO_LOAD = np.zeros(6)
+NOTHING_ATTACHED = np.zeros(10)
+
+
+def ideal_ship(added_mass, restoring) -> VesselParams:
+    """The ship in a fluid without friction."""
+    hull = SHIP.hull._replace(
+        added_mass=added_mass,
+        restoring=restoring,
+        damping=np.zeros((6, 6)),
+        quadratic=np.zeros(2),
+        current_scale=np.zeros(3),
+    )
+    return SHIP._replace(hull=hull)
+
+
+def state_at(place=(0.0, 0.0, 0.0), euler=(0.0, 0.0, 0.0), nu=(0.0,) * 6, ship=SHIP):
+    """State with the CoG `place` away from where it floats at rest."""
+    position = np.array([0.0, 0.0, ship.hull.design_height]) + place
+    return np.concatenate((position, quat_from_euler(*euler), nu))
+
+
+def body_of_points(masses, points):
+    """Mass, CoM and inertia about it (10,), of point masses seen from one point."""
+    mass = masses.sum()
+    com = masses @ points / mass
+    arms = points - com
+    tensor = sum(m * (r @ r * np.eye(3) - np.outer(r, r)) for m, r in zip(masses, arms, strict=True))
+    row = tensor[np.triu_indices(3)]
+    np.testing.assert_array_equal(inertia_tensor(row), tensor)
+    return np.concatenate(([mass], com, row))
+
+
+def skew(r):
+    """Matrix of the cross product r x."""
+    return np.array([[0.0, -r[2], r[1]], [r[2], 0.0, -r[0]], [-r[1], r[0], 0.0]])

@@ -1,0 +1,105 @@
+"""Loads of the water: what they must obey whatever the coefficients."""
+
+import numpy as np
+import pytest
+from gunnerus_ship import SHIP
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from shipcrane_twin.physics.hull import added_mass_bias, current_load, damping_load, restoring_load
+
+HULL = SHIP.hull
+compiled = settings(deadline=None)
+tilts = st.floats(-0.6, 0.6)
+speeds = st.floats(-5.0, 5.0)
+nus = st.tuples(*[st.floats(-2.0, 2.0)] * 3, *[st.floats(-0.3, 0.3)] * 3).map(np.array)
+
+
+def potential(height, roll, pitch):
+    rise, c = height - HULL.design_height, HULL.restoring
+    return 0.5 * (
+        c[2, 2] * rise**2 + 2.0 * c[2, 4] * rise * pitch + c[3, 3] * roll**2 + c[4, 4] * pitch**2
+    )
+
+
+def slope(place, i, step=1e-4):
+    before, after = list(place), list(place)
+    before[i], after[i] = place[i] - step, place[i] + step
+    return (potential(*after) - potential(*before)) / (2.0 * step)
+
+
+@compiled
+@given(rise=st.floats(-2.0, 2.0), roll=tilts, pitch=tilts)
+def test_restoring_is_the_gradient_of_its_potential(rise, roll, pitch):
+    place = (HULL.design_height + rise, roll, pitch)
+    force_up, moment_b = restoring_load(HULL, *place)
+    roll_axis_b = np.array([1.0, 0.0, 0.0])
+    pitch_axis_b = np.array([0.0, np.cos(roll), -np.sin(roll)])
+    yaw_axis_b = np.array([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])
+    loads = [force_up, moment_b @ roll_axis_b, moment_b @ pitch_axis_b, moment_b @ yaw_axis_b]
+    np.testing.assert_allclose(loads, [-slope(place, 0), -slope(place, 1), -slope(place, 2), 0.0], atol=1.0)
+
+
+@compiled
+@given(turn=st.tuples(*[st.floats(-0.3, 0.3)] * 3), heave=st.floats(-2.0, 2.0))
+def test_linear_and_quadratic_damping_only_take_power(turn, heave):
+    nu = np.array([0.0, 0.0, heave, *turn])
+    assert nu @ damping_load(HULL, nu) <= 0.0
+
+
+def test_damping_grows_linearly_with_the_squared_part_on_top_in_roll_and_yaw():
+    rates = np.array([0.0, 0.0, 0.0, 0.2, 0.0, -0.1])
+    squared = [HULL.quadratic[0] * 0.2**2, -HULL.quadratic[1] * 0.1**2]
+    expected = -HULL.damping @ rates
+    expected[[3, 5]] -= squared
+    np.testing.assert_allclose(damping_load(HULL, rates), expected)
+
+
+@compiled
+@given(x=speeds, y=speeds)
+def test_current_is_symmetric_to_port_and_starboard_and_grows_with_speed_squared(x, y):
+    assume(abs(y) > 1e-6)
+    load = current_load(HULL, x, y)
+    np.testing.assert_allclose(current_load(HULL, x, -y), load * [1.0, -1.0, -1.0], atol=1e-9)
+    np.testing.assert_allclose(current_load(HULL, 3.0 * x, 3.0 * y), 9.0 * load, atol=1e-6)
+
+
+@pytest.mark.parametrize("towards_deg", [-170, -135, -90, -45, -10, 10, 45, 90, 135, 170])
+def test_current_pushes_sideways_the_way_it_flows(towards_deg):
+    angle = np.deg2rad(towards_deg)  # anticlockwise from the bow
+    assert current_load(HULL, np.cos(angle), np.sin(angle))[1] * np.sin(angle) > 0.0
+
+
+def test_current_from_astern_pushes_forward_and_from_ahead_aft():
+    assert current_load(HULL, 1.0, 0.0)[0] > 0.0
+    assert current_load(HULL, -1.0, 0.0)[0] < 0.0
+
+
+@pytest.mark.parametrize("row", range(19))
+def test_current_coefficients_are_those_of_the_table_at_its_directions(row):
+    angle, *coefficients = HULL.current_table[row]
+    load = current_load(HULL, np.cos(angle), -np.sin(angle))  # the table counts clockwise, y is to port
+    expected = HULL.current_scale * coefficients * [1.0, -1.0, -1.0]
+    np.testing.assert_allclose(load, expected, atol=1e-6 * HULL.current_scale.max())
+
+
+def test_current_scale_is_half_density_times_area_and_length():
+    half_rho = 0.5 * 1025.0
+    np.testing.assert_allclose(HULL.current_scale, half_rho * np.array([24.96, 88.14, 88.14 * 33.9]))
+
+
+@compiled
+@given(nu=nus)
+def test_kirchhoffs_added_mass_forces_do_no_work_with_the_munk_moment_put_back(nu):
+    bias = added_mass_bias(HULL, nu, np.zeros(3))
+    munk = -np.cross(nu[:3], (HULL.added_mass @ nu)[:3])
+    size = np.abs(nu) @ np.abs(bias) + 1.0
+    assert nu[:3] @ bias[:3] + nu[3:] @ (bias[3:] + munk) == pytest.approx(0.0, abs=1e-9 * size)
+
+
+@compiled
+@given(nu=nus, water=st.tuples(*[st.floats(-2.0, 2.0)] * 3).map(np.array))
+def test_steady_water_counts_only_as_it_turns_in_body_axes(nu, water):
+    extra = added_mass_bias(HULL, nu, water) - added_mass_bias(HULL, nu, np.zeros(3))
+    turning = np.concatenate((np.cross(nu[3:], water), np.zeros(3)))
+    np.testing.assert_allclose(extra, -HULL.added_mass @ turning, atol=1e-6)

@@ -1,0 +1,243 @@
+"""The ship as a rigid body: inertia against point masses, conservation laws, the linear model."""
+
+import numpy as np
+import pytest
+from gunnerus_ship import (
+    NO_LOAD,
+    NOTHING_ATTACHED,
+    SHIP,
+    STILL_WATER,
+    body_of_points,
+    ideal_ship,
+    skew,
+    state_at,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from shipcrane_twin.physics.frames import matrix_from_quat
+from shipcrane_twin.physics.vessel import (
+    attached_inertia,
+    carried_load,
+    carried_mean,
+    momentum_bias,
+    point_motion,
+    state_rate,
+    vessel_step,
+)
+
+compiled = settings(deadline=None)
+seeds = st.integers(0, 9999)
+RESTING_WATER_AND_NO_LOAD = NO_LOAD, STILL_WATER
+
+
+def point_masses(seed, count=6):
+    rng = np.random.default_rng(seed)
+    return rng, rng.uniform(50.0, 2000.0, count), rng.normal(size=(count, 3)) * 4.0
+
+
+@compiled
+@given(seed=seeds)
+def test_attached_inertia_is_that_of_point_masses(seed):
+    rng, masses, points = point_masses(seed)
+    offset = rng.normal(size=3) * 5.0
+    expected = np.zeros((6, 6))
+    for mass, point in zip(masses, points + offset, strict=True):
+        velocity_from_nu = np.hstack((np.eye(3), -skew(point)))
+        expected += mass * velocity_from_nu.T @ velocity_from_nu
+    found = attached_inertia(body_of_points(masses, points), offset)
+    np.testing.assert_allclose(found, expected, atol=1e-9 * expected.max())
+
+
+@compiled
+@given(seed=seeds)
+def test_momentum_bias_is_what_point_masses_need_to_keep_their_body_velocities(seed):
+    rng, masses, points = point_masses(seed)
+    nu = rng.normal(size=6)
+    expected = np.zeros(6)
+    for mass, point in zip(masses, points, strict=True):
+        force = mass * np.cross(nu[3:], nu[:3] + np.cross(nu[3:], point))
+        expected += np.concatenate((force, np.cross(point, force)))
+    inertia = attached_inertia(body_of_points(masses, points), np.zeros(3))
+    np.testing.assert_allclose(momentum_bias(inertia, nu), expected, atol=1e-9 * np.abs(expected).max())
+
+
+@compiled
+@given(seed=seeds)
+def test_carried_load_is_that_of_point_masses(seed):
+    rng, masses, points = point_masses(seed)
+    omega, alpha, proper = rng.normal(size=(3, 3))
+    expected = np.zeros(6)
+    for mass, point in zip(masses, points, strict=True):
+        felt = proper + np.cross(alpha, point) + np.cross(omega, np.cross(omega, point))
+        expected -= mass * np.concatenate((felt, np.cross(point, felt)))
+    found = carried_load(body_of_points(masses, points), omega, alpha, proper)
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
+
+
+def test_a_body_carried_at_rest_weighs_on_its_foot():
+    body = np.array([2000.0, 1.0, 2.0, 3.0, *np.ones(6)])
+    heeled = state_at(euler=(0.2, 0.0, 1.0))
+    down_b = -matrix_from_quat(heeled[3:7])[2] * 2000.0 * SHIP.gravity
+    wrench = carried_mean(SHIP, body, heeled, np.zeros(6), heeled, np.zeros(6))
+    np.testing.assert_allclose(wrench, np.concatenate((down_b, np.cross(body[1:4], down_b))))
+
+
+@compiled
+@given(seed=seeds)
+def test_carried_mean_is_the_mean_of_both_ends(seed):
+    rng, masses, points = point_masses(seed)
+    body = body_of_points(masses, points)
+    ends = [state_at(euler=rng.normal(size=3), nu=rng.normal(size=6)) for _ in range(2)]
+    rates = rng.normal(size=(2, 6))
+    arm = SHIP.crane_base - SHIP.cog
+    loads = []
+    for state, rate in zip(ends, rates, strict=True):
+        proper = point_motion(state, rate, arm)[2] + SHIP.gravity * matrix_from_quat(state[3:7])[2]
+        loads.append(carried_load(body, state[10:], rate[3:], proper))
+    found = carried_mean(SHIP, body, ends[0], rates[0], ends[1], rates[1])
+    np.testing.assert_allclose(found, 0.5 * (loads[0] + loads[1]), rtol=1e-12)
+
+
+@compiled
+@given(seed=seeds)
+def test_motion_of_a_point_is_the_derivative_of_its_path(seed):
+    rng = np.random.default_rng(seed)
+    arm, dt = rng.normal(size=3) * 10.0, 1e-3
+    state = state_at(euler=rng.normal(size=3) * 0.2, nu=rng.normal(size=6) * 0.3)
+    args = (NO_LOAD, rng.normal(size=3), NOTHING_ATTACHED)
+    nu_dot = state_rate(SHIP, state, *args)[7:]
+    _, vel_b, acc_b = point_motion(state, nu_dot, arm)
+    rot = matrix_from_quat(state[3:7])
+    before, here, after = (
+        point_motion(vessel_step(SHIP, state, *args, t), nu_dot, arm)[0] for t in (-dt, 0.0, dt)
+    )
+    np.testing.assert_allclose((after - before) / (2.0 * dt), rot @ vel_b, atol=1e-3)
+    np.testing.assert_allclose((after - 2.0 * here + before) / dt**2, rot @ acc_b, atol=1e-2)
+
+
+def total_inertia(ship, attached):
+    return ship.rigid_mass + ship.hull.added_mass + attached_inertia(attached, ship.crane_base - ship.cog)
+
+
+def energy(ship, state, attached):
+    nu, c = state[7:], ship.hull.restoring
+    rot = matrix_from_quat(state[3:7])
+    rise = state[2] - ship.hull.design_height
+    roll, pitch = np.arctan2(rot[2, 1], rot[2, 2]), -np.arcsin(rot[2, 0])
+    kinetic = 0.5 * nu @ total_inertia(ship, attached) @ nu
+    water = 0.5 * (c[2, 2] * rise**2 + 2.0 * c[2, 4] * rise * pitch + c[3, 3] * roll**2 + c[4, 4] * pitch**2)
+    com_w = state[:3] + rot @ (ship.crane_base - ship.cog + attached[1:4])
+    return kinetic, kinetic + water + attached[0] * ship.gravity * com_w[2]
+
+
+def test_undamped_ship_with_a_crane_keeps_its_energy():
+    # Alike in all directions of travel, so that Kirchhoff's forces do no work without the Munk moment.
+    added = np.zeros((6, 6))
+    added[:3, :3] = 4e5 * np.eye(3)
+    added[3:, 3:] = SHIP.hull.added_mass[3:, 3:]
+    ship = ideal_ship(added, SHIP.hull.restoring)
+    _, masses, points = point_masses(5)
+    crane = body_of_points(masses, points)
+    state = state_at((0.0, 0.0, 0.4), (0.25, -0.1, 2.0), (0.8, -0.5, 0.2, 0.1, 0.05, -0.2))
+    kinetic, total = [], []
+    for _ in range(6000):
+        values = energy(ship, state, crane)
+        kinetic.append(values[0])
+        total.append(values[1])
+        state = vessel_step(ship, state, *RESTING_WATER_AND_NO_LOAD, crane, 0.01)
+    exchanged = np.ptp(kinetic)
+    assert exchanged > 1e5
+    np.testing.assert_allclose(total, total[0], rtol=0.0, atol=1e-6 * exchanged)
+
+
+def test_ship_without_water_keeps_its_momentum_and_spin():
+    ship = ideal_ship(np.zeros((6, 6)), np.zeros((6, 6)))._replace(gravity=0.0)
+    _, masses, points = point_masses(6)
+    crane = body_of_points(masses * 30.0, points)
+    inertia = total_inertia(ship, crane)
+
+    def momentum_w(state):
+        rot, body = matrix_from_quat(state[3:7]), inertia @ state[7:]
+        return rot @ body[:3], rot @ body[3:] + np.cross(state[:3], rot @ body[:3])
+
+    state = state_at((3.0, -2.0, 1.0), (0.3, -0.2, 1.0), (0.5, -0.4, 0.3, 0.5, -0.3, 0.4))
+    linear, angular = momentum_w(state)
+    for _ in range(6000):
+        state = vessel_step(ship, state, *RESTING_WATER_AND_NO_LOAD, crane, 0.01)
+    linear_end, angular_end = momentum_w(state)
+    np.testing.assert_allclose(linear_end, linear, atol=1e-6 * np.abs(linear).max())
+    np.testing.assert_allclose(angular_end, angular, atol=1e-6 * np.abs(angular).max())
+
+
+@compiled
+@given(seed=seeds)
+def test_a_current_only_carries_everything_along(seed):
+    rng = np.random.default_rng(seed)
+    state = state_at(rng.normal(size=3) * 0.3, rng.normal(size=3) * 0.2, rng.normal(size=6) * 0.2)
+    water = np.array([*rng.normal(size=2), 0.0])
+    drifting = state.copy()
+    drifting[7:10] += matrix_from_quat(state[3:7]).T @ water
+    load = rng.normal(size=6) * 1e5
+    for _ in range(100):
+        state = vessel_step(SHIP, state, load, np.zeros(3), NOTHING_ATTACHED, 0.02)
+        drifting = vessel_step(SHIP, drifting, load, water, NOTHING_ATTACHED, 0.02)
+    np.testing.assert_allclose(drifting[:3] - 2.0 * water, state[:3], atol=1e-7)
+    np.testing.assert_allclose(drifting[3:7], state[3:7], atol=1e-8)
+
+
+def oscillating_modes():
+    """Eigenvalue and shape (position, rate) of each oscillation of the linear model about the CoG."""
+    hull = SHIP.hull
+    inverse = np.linalg.inv(SHIP.rigid_mass + hull.added_mass)
+    matrix = np.block([[np.zeros((6, 6)), np.eye(6)], [-inverse @ hull.restoring, -inverse @ hull.damping]])
+    values, shapes = np.linalg.eig(matrix)
+    return {
+        ("surge", "sway", "heave", "roll", "pitch", "yaw")[name]: (value, shape)
+        for value, shape in zip(values, shapes.T, strict=True)
+        if value.imag > 0.1
+        for name in [int(np.argmax(np.abs(shape[:6]) * [1, 1, 1, 10, 10, 10]))]  # angles times metres
+    }
+
+
+@pytest.mark.parametrize(("mode", "row", "period_s"), [("roll", 3, 5.91), ("heave", 2, 4.77), ("pitch", 4, 4.43)])
+def test_free_decay_has_period_and_damping_of_the_linear_model(mode, row, period_s):
+    value, shape = oscillating_modes()[mode]
+    period = 2.0 * np.pi / value.imag
+    assert period == pytest.approx(period_s, abs=0.01)
+    start = (shape * 1e-4 / shape[row]).real
+    state = state_at(start[:3], start[3:6], start[6:])
+    dt, moves = 0.01, []
+    for _ in range(round(3.3 * period / dt)):
+        w, x, y, z = state[6], state[3], state[4], state[5]
+        small = 2.0 * w * np.array([x, y, z])
+        moves.append([0.0, 0.0, state[2] - SHIP.hull.design_height, *small][row])
+        state = vessel_step(SHIP, state, *RESTING_WATER_AND_NO_LOAD, NOTHING_ATTACHED, dt)
+    times, moves = np.arange(len(moves)) * dt, np.array(moves)
+    falls = np.flatnonzero((moves[:-1] > 0.0) & (moves[1:] <= 0.0))
+    crossings = times[falls] + dt * moves[falls] / (moves[falls] - moves[falls + 1])
+    assert np.diff(crossings) == pytest.approx(period, rel=0.01)
+    peaks = [moves[a:b].max() for a, b in zip(falls[:-1], falls[1:], strict=True)]
+    assert np.log(peaks[0] / peaks[1]) == pytest.approx(-value.real * period, rel=0.01)
+
+
+def test_a_load_in_each_direction_moves_the_ship_that_way():
+    for i in range(6):
+        load = np.zeros(6)
+        load[i] = 1e5
+        assert state_rate(SHIP, state_at(), load, STILL_WATER, NOTHING_ATTACHED)[7 + i] > 0.0
+
+
+def test_attached_weight_pulls_down_and_heels_to_its_side():
+    starboard = np.array([5000.0, 0.0, -4.0, 3.0, *np.zeros(6)])
+    rate = state_rate(SHIP, state_at(), *RESTING_WATER_AND_NO_LOAD, starboard)[7:]
+    assert rate[2] < 0.0
+    assert rate[3] > 0.0
+
+
+def test_a_step_leaves_its_inputs_alone_and_the_quaternion_a_unit():
+    state = state_at(euler=(0.3, 0.1, 1.0), nu=(1.0, 0.5, 0.2, 0.3, 0.1, 0.2))
+    kept = state.copy()
+    new = vessel_step(SHIP, state, *RESTING_WATER_AND_NO_LOAD, NOTHING_ATTACHED, 0.1)
+    np.testing.assert_array_equal(state, kept)
+    assert np.linalg.norm(new[3:7]) == pytest.approx(1.0, abs=1e-15)
