@@ -107,7 +107,7 @@ def nearest(key: str, known: Sequence[str]) -> str:
     close = difflib.get_close_matches(key, known, n=1)
     if close:
         return f"did you mean {close[0]}?"
-    return "known keys here: " + ", ".join(sorted(known))
+    return "known here: " + ", ".join(sorted(known))
 
 
 def known_keys(cls: Any, path: Sequence[Any]) -> list[str]:

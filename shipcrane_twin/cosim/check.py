@@ -1,11 +1,23 @@
-"""Whether a scenario that reads well can also be built: names of schemes, geometry, equilibrium."""
+"""Whether a scenario that reads well can also be built: names of schemes, geometry, equilibrium, stability."""
+
+import itertools
+import math
+
+import numpy as np
 
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError, nearest
 from shipcrane_twin.cosim.build import crane_chain, crane_drives
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import at_rest
+from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.crane_chain import ChainParams
 from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
+from shipcrane_twin.physics.crane_dynamics import mass_matrix
+from shipcrane_twin.physics.crane_motion import servo_gains
+
+RK4_REACH = 2.5
+"""Largest rate times step that classical Runge-Kutta integrates stably (2.79 for real rates), with a margin."""
 
 
 def check_buildable(scenario: Scenario) -> None:
@@ -16,23 +28,60 @@ def check_buildable(scenario: Scenario) -> None:
     scenario : Scenario
         Already right in types, ranges and across its parts.
     """
+    name = scenario.name
     if scenario.coupling not in SCHEMES:
-        raise ConfigError(
-            f"{scenario.name}: coupling is {scenario.coupling!r}; {nearest(scenario.coupling, list(SCHEMES))}"
-        )
+        raise ConfigError(f"{name}: coupling is {scenario.coupling!r}; {nearest(scenario.coupling, list(SCHEMES))}")
     try:
-        crane_chain(scenario.crane)
+        chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
         at_rest(scenario)
     except ValueError as err:
-        raise ConfigError(f"{scenario.name}: {err}") from None
-    lows = joints_from_lengths(drives, drives.length_min)
-    highs = joints_from_lengths(drives, drives.length_max)
-    for link, value, low, high in zip(
-        scenario.crane.links, scenario.crane.initial_joints, lows, highs, strict=True
-    ):
-        if not min(low, high) <= value <= max(low, high):
+        raise ConfigError(f"{name}: {err}") from None
+    ends = np.sort([joints_from_lengths(drives, drives.length_min), joints_from_lengths(drives, drives.length_max)], 0)
+    start = scenario.crane.initial_joints
+    for link, value, low, high in zip(scenario.crane.links, start, *ends, strict=True):
+        if not low <= value <= high:
             raise ConfigError(
-                f"{scenario.name}: crane.initial_joints has {value:g} for {link.joint}, "
-                f"expected {min(low, high):.4f} to {max(low, high):.4f}, where its cylinder ends"
+                f"{name}: crane.initial_joints has {value:g} for {link.joint}, "
+                f"expected {low:.4f} to {high:.4f}, where its cylinder ends"
             )
+    check_servo_step(scenario, chain, ends)
+
+
+def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> None:
+    """Raise ConfigError if the crane's micro steps are too long for its fastest servo mode in any posture.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    chain : ChainParams
+    ends : float64, shape (2, n)
+        Lowest and highest joint values; infinite for joints without ends.
+    """
+    crane = scenario.crane
+    start = np.array(crane.initial_joints)
+    frequencies = [link.drive.servo_frequency_hz for link in crane.links]
+    kp, kd = servo_gains(chain, start, frequencies, crane.servo.damping_ratio)
+    postures = [
+        np.linspace(low, high, 5) if math.isfinite(high - low) else [value]
+        for low, high, value in zip(*ends, start, strict=True)
+    ]
+    fastest = max(servo_rate(chain, np.array(posture), kp, kd) for posture in itertools.product(*postures))
+    step_ms = scenario.macro_step_ms / math.ceil(scenario.macro_step_ms / crane.servo.micro_step_max_ms)
+    allowed_ms = 1e3 * RK4_REACH / fastest
+    if step_ms > allowed_ms:
+        raise ConfigError(
+            f"{scenario.name}: crane.servo.micro_step_max_ms is {crane.servo.micro_step_max_ms:g}, too long for the "
+            f"fastest servo mode ({fastest:.0f} 1/s); expected at most {allowed_ms:.2f}"
+        )
+
+
+def servo_rate(chain: ChainParams, q: Array, kp: Array, kd: Array) -> float:
+    """Return the largest rate |lambda| [1/s] of ``M q'' + kd q' + kp q = 0`` at a posture."""
+    n = len(q)
+    inverse = np.linalg.inv(mass_matrix(chain, q))
+    system = np.zeros((2 * n, 2 * n))
+    system[:n, n:] = np.eye(n)
+    system[n:, :n] = -inverse * kp
+    system[n:, n:] = -inverse * kd
+    return float(np.abs(np.linalg.eigvals(system)).max())

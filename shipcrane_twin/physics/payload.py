@@ -86,10 +86,11 @@ def winch_speed(wire: WireParams, length: float, speed: float, command: float, s
 def braking_speed(room: float, accel: float, step_s: float) -> float:
     """Return the largest speed at a step's end from which a stop within ``room`` [m] is still possible.
 
-    The step itself uses up ``v step / 2``: the root of ``v^2 / (2 a) + v step / 2 = room``.
+    The step itself uses up ``v step / 2``, and the last step of a stop, with less than ``a step`` left to
+    lose, up to as much again: the root of ``v^2 / (2 a) + v step = room``.
     """
-    half = 0.5 * accel * step_s
-    return np.sqrt(half * half + 2.0 * accel * room) - half
+    change = accel * step_s
+    return np.sqrt(change * change + 2.0 * accel * room) - change
 
 
 @njit(cache=True)
@@ -153,7 +154,8 @@ def payload_step(
             place_tip(tip_prev, tip_next, part, step_s, tip)
             stiffness = wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length)
             loss = wire_loss(stiffness, mass, wire.damping_ratio, wire.gravity)
-            tension = pull(tip, stage_state, length, rate, stiffness, loss, force)
+            stretch_static = mass * wire.gravity / stiffness
+            tension = pull(tip, stage_state, length, rate, stiffness, loss, stretch_static, force)
             if stage == 0:
                 tension_max = max(tension_max, tension)
             reach = h if stage == 2 else 0.5 * h

@@ -23,7 +23,14 @@ def wire_loss(stiffness: float, mass: float, damping_ratio: float, gravity: floa
 
 @njit(cache=True)
 def pull(
-    tip: Array, load: Array, length: float, pay_out_rate: float, stiffness: float, loss: float, force: Array
+    tip: Array,
+    load: Array,
+    length: float,
+    pay_out_rate: float,
+    stiffness: float,
+    loss: float,
+    stretch_static: float,
+    force: Array,
 ) -> float:
     """Fill the wire's force on the load and return the tension; the crane tip feels the opposite force.
 
@@ -35,6 +42,8 @@ def pull(
         Unstretched length [m] and its rate, positive when paying out [m/s].
     stiffness, loss : float
         [N/m] and loss factor [s/m].
+    stretch_static : float
+        Stretch up to which the damping grows [m]: that of the hanging load.
     force : float64, shape (3,)
         Is filled: force on the load [N, world]; exactly zero while the wire is slack.
 
@@ -45,8 +54,9 @@ def pull(
 
     Notes
     -----
-    ``T = k s max(0, 1 + loss ds/dt)`` with stretch s (Hunt and Crossley 1975): the force is
-    continuous when the wire goes taut and never pushes. No sag, no mass.
+    ``T = k max(0, s + loss min(s, s_static) ds/dt)`` with stretch s: the force is continuous when the
+    wire goes taut (Hunt and Crossley 1975) and never pushes. Beyond the static stretch it is a plain
+    dashpot, so the damping never outgrows what the micro steps resolve. No sag, no mass.
     """
     x, y, z = tip[0] - load[0], tip[1] - load[1], tip[2] - load[2]
     distance = np.sqrt(x * x + y * y + z * z)
@@ -56,6 +66,7 @@ def pull(
         return 0.0
     x, y, z = x / distance, y / distance, z / distance
     opening = x * (tip[3] - load[3]) + y * (tip[4] - load[4]) + z * (tip[5] - load[5])
-    tension = stiffness * stretch * max(0.0, 1.0 + loss * (opening - pay_out_rate))
+    damped = loss * min(stretch, stretch_static) * (opening - pay_out_rate)
+    tension = stiffness * max(0.0, stretch + damped)
     force[0], force[1], force[2] = tension * x, tension * y, tension * z
     return tension

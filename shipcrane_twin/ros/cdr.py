@@ -137,8 +137,19 @@ def skip_string(message: bytes, at: int) -> int:
 
 
 def read_stamp(message: bytes) -> int:
-    """Return the stamp [ns] of a serialized Clock or of any message that starts with a Header."""
-    sec, nanosec = struct.unpack_from("<iI", message, ORIGIN)
+    """Return the stamp [ns] of a serialized Clock or of any message that starts with a Header.
+
+    Raises
+    ------
+    CdrError
+        If it is too short to hold one, or the stamp lies before zero.
+    """
+    try:
+        sec, nanosec = struct.unpack_from("<iI", message, ORIGIN)
+    except struct.error:
+        raise CdrError(f"the message has {len(message)} bytes, too few for a stamp") from None
+    if sec < 0:
+        raise CdrError(f"the stamp is {sec} s, expected zero or more")
     return int(sec) * 1_000_000_000 + int(nanosec)
 
 

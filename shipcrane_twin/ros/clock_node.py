@@ -17,7 +17,15 @@ from shipcrane_twin.cosim.pacing import Lockstep, Pace, progress_of
 from shipcrane_twin.cosim.time import stamp_parts
 from shipcrane_twin.cosim.topics import BY_NAME
 from shipcrane_twin.ros.cdr import Template
-from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
+from shipcrane_twin.ros.links import (
+    LOOP_QOS,
+    Inbox,
+    LoopOwned,
+    Mailroom,
+    listeners_matched,
+    message_class,
+    refuse_rivals,
+)
 from shipcrane_twin.ros.parameters import declare, declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, write_json, write_result
 from shipcrane_twin.ros.stop import StopFlag
@@ -133,6 +141,7 @@ class ClockNode:
             if self._lockstep.recorded and not self._recorder.subscription.get_publisher_count():
                 missing.append("recorder (/recorder/progress)")
             if not missing:
+                refuse_rivals(self.node, ["/clock", *DONE_TOPIC.values(), "/recorder/progress"])
                 return
             self._silent = sorted({text.split()[0] for text in missing})
             self._executor.spin_once(timeout_sec=0.02)

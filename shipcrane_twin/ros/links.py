@@ -1,6 +1,7 @@
 """Publishers and subscriptions of the loop: serialized messages, taken by the loop itself, picked by stamp."""
 
 import importlib
+import time
 from collections.abc import Iterable
 from typing import Any
 
@@ -9,13 +10,18 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as rcl
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
+from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.topics import Topic
-from shipcrane_twin.ros.cdr import read_stamp
+from shipcrane_twin.ros.cdr import CdrError, read_stamp
 
 LOOP_DEPTH = 400
 """Messages kept per topic: more than the clock ever lets anyone run ahead of the slowest listener."""
 
-COMMAND_DEPTH = 10
+NO_STAMP = -1
+"""Key of a message without a readable stamp: nobody ever waits for it."""
+
+DISCOVERY_S = 0.1
+"""Wall time in which the nodes of another run in the same domain make themselves known."""
 
 LOOP_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -69,7 +75,11 @@ class Inbox:
         message = self.take()
         if message is None:
             return False
-        self.waiting[read_stamp(message)] = message
+        try:
+            stamp = read_stamp(message)
+        except CdrError:
+            stamp = NO_STAMP
+        self.waiting[stamp] = message
         return True
 
     def has(self, time_ns: int) -> bool:
@@ -142,3 +152,21 @@ def listeners_matched(node: Node, publishers: dict[str, Any], expected: dict[str
         if not missing and publisher.get_subscription_count() < len(present):
             missing.append(f"a listener that was seen but is not connected yet ({topic})")
     return missing
+
+
+def refuse_rivals(node: Node, topics: Iterable[str]) -> None:
+    """Make sure that nobody else publishes a node's topics: two runs in one domain would spoil each other.
+
+    Raises
+    ------
+    ConfigError
+        Naming topic, domain and remedy.
+    """
+    time.sleep(DISCOVERY_S)
+    for topic in topics:
+        if node.count_publishers(topic) > 1:
+            domain = node.context.get_domain_id()
+            raise ConfigError(
+                f"{node.get_name()}: {topic} has more than one publisher in ROS domain {domain}; another run is under "
+                "way there: wait for its end, or set another ROS_DOMAIN_ID for this one"
+            )

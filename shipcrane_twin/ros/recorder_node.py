@@ -13,7 +13,7 @@ from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.topics import BY_NAME, TOPICS
 from shipcrane_twin.record.bag import BagWriter
 from shipcrane_twin.record.collector import StepCollector
-from shipcrane_twin.ros.cdr import Template, read_stamp
+from shipcrane_twin.ros.cdr import CdrError, Template, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
 from shipcrane_twin.ros.parameters import declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, write_result
@@ -106,8 +106,16 @@ class RecorderNode:
         leave_graph(self.node)
 
     def _drain(self) -> None:
-        """Take all that has arrived."""
+        """Take all that has arrived; what comes from outside gets the recorder's time, whatever its stamp says."""
         for inbox in self._mail.inboxes:
-            name = inbox.topic.name
+            topic = inbox.topic
             while (message := inbox.take()) is not None:
-                self._collector.add(name, read_stamp(message), message)
+                if topic.publisher == "operator":
+                    self._collector.add(topic.name, max(self._collector.complete, 0) * self._step_ns, message)
+                    continue
+                try:
+                    stamp = read_stamp(message)
+                except CdrError as err:
+                    self.node.get_logger().warn(f"{topic.name} not recorded: {err}", throttle_duration_sec=1.0)
+                    continue
+                self._collector.add(topic.name, stamp, message)

@@ -4,12 +4,14 @@ import os
 import signal
 from types import FrameType
 
+from shipcrane_twin.ros.shared_memory import remove_own
+
 
 class StopFlag:
     """Becomes true on SIGINT or SIGTERM.
 
     Until `arm` is called the signal ends the process at once: imports and compilation take seconds in
-    which nothing would look at the flag, and nothing has been opened yet.
+    which nothing would look at the flag, and all that may have been opened is shared memory.
     """
 
     def __init__(self) -> None:
@@ -25,6 +27,7 @@ class StopFlag:
     def _raise(self, number: int, frame: FrameType | None) -> None:
         self.raised = True
         if not self._armed:
+            remove_own()
             os._exit(0)
 
     def __bool__(self) -> bool:

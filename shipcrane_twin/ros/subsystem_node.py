@@ -13,9 +13,17 @@ from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS, SCHEMES
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
-from shipcrane_twin.cosim.topics import BY_NAME, published_by
+from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, published_by
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
-from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, listeners_matched, message_class
+from shipcrane_twin.ros.links import (
+    LOOP_QOS,
+    Inbox,
+    LoopOwned,
+    Mailroom,
+    listeners_matched,
+    message_class,
+    refuse_rivals,
+)
 from shipcrane_twin.ros.parameters import declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, run_node, write_result
 from shipcrane_twin.ros.stop import StopFlag
@@ -118,6 +126,7 @@ class SubsystemNode:
         while not self._stop:
             missing = listeners_matched(self.node, self._publishers, self._expected)
             if not missing:
+                refuse_rivals(self.node, self._publishers)
                 return
             if time.monotonic() - told > 5.0:
                 self.node.get_logger().warn(f"waiting for {', '.join(missing)}")
@@ -159,6 +168,9 @@ class SubsystemNode:
         while (message := self._command.take()) is not None:
             try:
                 names, velocities = read_joint_velocities(message)
+                unknown = sorted(set(names) - set(COMMAND_JOINTS))
+                if unknown:
+                    raise CdrError(f"joint {unknown[0]!r} is unknown, expected some of {', '.join(COMMAND_JOINTS)}")
                 refusal = self._participant.subsystem.commands.say(names, velocities)  # type: ignore[attr-defined]
             except CdrError as err:
                 refusal = str(err)

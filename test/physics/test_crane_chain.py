@@ -8,11 +8,11 @@ from palfinger import WORK_POSE, mixed_chain, palfinger_chain
 from shipcrane_twin.physics.crane_chain import forward_kinematics, make_chain, tip_jacobian, tip_state
 
 
-def test_tip_equals_the_published_crane():
+def test_tip_equals_the_published_crane(measured):
     chain = palfinger_chain()
     _, joints, tips = kinematics_rows()
-    for q, tip in zip(joints, tips, strict=True):
-        np.testing.assert_allclose(tip_state(chain, q, np.zeros(4))[0], tip, rtol=0.0, atol=1e-6)
+    found = [tip_state(chain, q, np.zeros(4))[0] for q in joints]
+    measured("crane tip, 50 reference rows: largest error", np.abs(np.array(found) - tips).max(), 1e-6, "m")
 
 
 def test_tip_equals_the_published_closed_form():

@@ -22,10 +22,10 @@ LENGTHS = st.tuples(st.floats(-4.0, 4.0), st.floats(1.1, 1.8), st.floats(1.2, 1.
 )
 
 
-def test_joints_equal_the_published_crane():
+def test_joints_equal_the_published_crane(measured):
     lengths, joints, _ = kinematics_rows()
-    for length, q in zip(lengths, joints, strict=True):
-        np.testing.assert_allclose(joints_from_lengths(DRIVES, length), q, rtol=0.0, atol=1e-6)
+    worst = max(np.abs(joints_from_lengths(DRIVES, a) - q).max() for a, q in zip(lengths, joints, strict=True))
+    measured("crane joints from cylinders, 50 reference rows: largest error", worst, 1e-6, "rad, m")
 
 
 @settings(deadline=None)  # the first call compiles

@@ -22,7 +22,7 @@ SPRINGS = {
 
 
 @pytest.mark.parametrize("spring", SPRINGS.values(), ids=SPRINGS.keys())
-def test_undamped_crane_on_a_resting_base_keeps_its_energy(spring):
+def test_undamped_crane_on_a_resting_base_keeps_its_energy(spring, measured):
     chain, limits = palfinger_chain(), palfinger_limits()
     servo = ServoParams(kp=spring, kd=np.zeros(4), effort_max=np.full(4, np.inf))
     rest = np.array([0.3, 0.4, 0.8, 1.0])
@@ -36,7 +36,9 @@ def test_undamped_crane_on_a_resting_base_keeps_its_energy(spring):
         state = crane_step(chain, servo, limits, state, np.zeros(4), base, base, 1000, 1.0)[0]
     exchanged = np.ptp(kinetic)
     assert exchanged > 1e4  # it does fall and swing
-    np.testing.assert_allclose(total, total[0], rtol=0.0, atol=1e-6 * exchanged)
+    name = next(name for name, value in SPRINGS.items() if value is spring)
+    drift = np.abs(np.array(total) - total[0]).max() / exchanged
+    measured(f"energy of the crane ({name}) over 60 s: drift over energy exchanged", drift, 1e-6)
 
 
 class Voyage:

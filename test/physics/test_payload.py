@@ -40,7 +40,7 @@ def test_pendulum_has_the_period_of_the_elliptic_integral(angle_deg, length):
     sway = swing(swung_state(angle, length, 700.0), step_s, round(3.3 * period / step_s))[:, 0] - FIXED[0]
     falls = np.flatnonzero((sway[:-1] > 0.0) & (sway[1:] <= 0.0))
     crossings = step_s * (falls + sway[falls] / (sway[falls] - sway[falls + 1]))
-    assert len(crossings) == 3
+    assert len(crossings) == 4
     np.testing.assert_allclose(np.diff(crossings), period, rtol=1e-3)
 
 
@@ -66,7 +66,8 @@ def exact_load(tip, start, times):
         span, opening = pivot[:3] - y[:3], pivot[3:] - y[3:]
         reach = np.linalg.norm(span)
         stretch, stretch_rate = reach - length, span @ opening / reach
-        tension = stiffness * max(0.0, stretch) * max(0.0, 1.0 + loss * stretch_rate)
+        damped = loss * min(stretch, mass * 9.80665 / stiffness) * stretch_rate
+        tension = stiffness * max(0.0, stretch + damped) if stretch > 0.0 else 0.0
         return np.concatenate((y[3:], tension / mass * span / reach - [0.0, 0.0, 9.80665]))
 
     return solve_ivp(rate, (0.0, times[-1]), start[:6], "DOP853", times, rtol=1e-9, atol=1e-10).y.T
@@ -113,8 +114,8 @@ def test_released_load_leaves_the_hook_to_spring_up_and_hang():
     state = hanging_state(WIRE, FIXED[:3], np.zeros(3), 5.0, 700.0)
     state[8] = 50.0
     states = swing(state, 0.02, 500)
-    assert states[1:, 2].max() > state[2] + 2e-3
     hanging = FIXED[2] - 5.0 - 50.0 * WIRE.gravity / stiffness_at(5.0)
+    assert state[2] < hanging < states[:, 2].max()
     assert states[-1, 2] == pytest.approx(hanging, abs=1e-9)
     _, tip_force, _ = payload_step(WIRE, states[-1], 0.0, FIXED, FIXED, 0.02)
     assert -tip_force[2] == pytest.approx(50.0 * WIRE.gravity, rel=1e-6)
@@ -208,7 +209,7 @@ def test_winch_runs_right_up_to_its_ends_and_stops(command, end):
 @given(room=st.floats(0.0, 10.0), step_s=st.floats(0.005, 0.2))
 def test_braking_speed_uses_up_the_room(room, step_s):
     speed = braking_speed(room, 0.25, step_s)
-    assert 0.5 * speed * step_s + speed**2 / 0.5 == pytest.approx(room, abs=1e-12)
+    assert speed * step_s + speed**2 / 0.5 == pytest.approx(room, abs=1e-12)
 
 
 def test_paying_out_lowers_the_load_by_the_length_paid_out():

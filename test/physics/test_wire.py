@@ -9,7 +9,7 @@ from wire_rig import WIRE, stiffness_at, swing, swung_state
 
 from shipcrane_twin.physics.wire import pull, wire_loss, wire_stiffness
 
-LENGTH, STIFF, LOSS = 2.0, 8e6, 40.0
+LENGTH, STIFF, LOSS, STATIC = 2.0, 8e6, 40.0, 1e-3
 compiled = settings(deadline=None)
 vectors = st.tuples(*[st.floats(-2.0, 2.0)] * 3).map(np.array)
 rates = st.floats(-0.5, 0.5)
@@ -20,7 +20,7 @@ def force_on_load(tip_from_load, velocity, pay_out=0.0, loss=LOSS, turn=lambda v
     load = np.concatenate((turn(np.array([3.0, 1.0, -2.0])), turn(velocity)))
     tip = np.concatenate((load[:3] + turn(tip_from_load), turn(np.array([0.1, 0.2, -0.1]))))
     load[3:] += tip[3:]
-    tension = pull(tip, load, LENGTH, pay_out, STIFF, loss, force)
+    tension = pull(tip, load, LENGTH, pay_out, STIFF, loss, STATIC, force)
     assert tension == pytest.approx(np.linalg.norm(force))
     return force
 
@@ -70,6 +70,13 @@ def test_only_the_rate_of_stretch_is_damped(rate):
     np.testing.assert_allclose(force_on_load(span, down, pay_out=rate), still)
 
 
+@pytest.mark.parametrize(("stretch", "share"), [(0.25, 0.25), (1.0, 1.0), (8.0, 1.0)])
+def test_damping_grows_up_to_the_static_stretch_and_no_further(stretch, share):
+    span, opening = np.array([0.0, 0.0, LENGTH + stretch * STATIC]), np.array([0.0, 0.0, -1e-3])
+    damper = force_on_load(span, opening) - force_on_load(span, np.zeros(3))
+    assert damper[2] == pytest.approx(share * STIFF * STATIC * LOSS * 1e-3, rel=1e-6)
+
+
 def test_a_coincident_load_feels_nothing():
     np.testing.assert_array_equal(force_on_load(np.zeros(3), np.ones(3)), np.zeros(3))
 
@@ -95,7 +102,7 @@ def test_bobbing_load_loses_height_as_its_damping_ratio_says(ratio, length, mass
     state[2] -= 1e-3 * stretch
     damped = np.sqrt(stiffness_at(length) / mass) * np.sqrt(1.0 - ratio**2)
     half = np.pi / damped
-    heights = swing(state, half / 200.0, 400)[:, 2] - rest
+    heights = swing(state, half / 200.0, 400, wire)[:, 2] - rest
     decrement = np.log(heights[0] / heights[400])
     assert decrement == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=1e-2)
     assert heights[200] > 0.0 > heights[0]
