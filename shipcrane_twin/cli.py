@@ -183,6 +183,8 @@ def main() -> None:
     except (ConfigError, BagError, ReportError) as err:
         errors.print(f"error: {err}", style="red", markup=False, highlight=False, soft_wrap=True)
         sys.exit(BAD_INPUT)
+    except KeyboardInterrupt:  # while it was ending anyway
+        sys.exit(INTERRUPTED)
 
 
 def interrupt(number: int, frame: FrameType | None) -> None:

@@ -14,12 +14,14 @@ from shipcrane_twin.config.settings import ConfigError, dotted, plain, read_sett
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML that refuses a key given twice."""
+    """Safe YAML that refuses keys that are no text or given twice."""
 
 
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
     keys = [loader.construct_object(key) for key, _ in node.value]
     for key in keys:
+        if not isinstance(key, str):
+            raise yaml.constructor.ConstructorError(None, None, f"the key {key!r} is not text", node.start_mark)
         if keys.count(key) > 1:
             raise yaml.constructor.ConstructorError(
                 None, None, f"the key {key!r} is given twice; keep one", node.start_mark
@@ -83,16 +85,27 @@ def merge(base: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
     return out
 
 
-def resolve_uses(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """Return the mapping with every ``use: FILE`` replaced by that file's content under the given keys."""
-    out = {key: resolve_uses(value, path) if isinstance(value, dict) else value for key, value in data.items()}
+def resolve_uses(data: dict[str, Any], path: Path, users: tuple[Path, ...] = ()) -> dict[str, Any]:
+    """Return the mapping with every ``use: FILE`` replaced by that file's content under the given keys.
+
+    Parameters
+    ----------
+    data : dict
+        What the file ``path`` holds, or a part of it.
+    path : Path
+    users : tuple of Path
+        The files that led to this one.
+    """
+    out = {key: resolve_uses(value, path, users) if isinstance(value, dict) else value for key, value in data.items()}
     if "use" not in out:
         return out
     name = out.pop("use")
     for folder in (path.parent, config_dir()):
         used = folder / str(name)
         if used.is_file():
-            return merge(resolve_uses(read_yaml(used), used), out)
+            if used.resolve() in (*users, path.resolve()):
+                raise ConfigError(f"{path}: use is {name!r}, which uses this file in turn; break the circle")
+            return merge(resolve_uses(read_yaml(used), used, (*users, path.resolve())), out)
     raise ConfigError(f"{path}: use is {name!r}, expected a YAML file beside it or under {config_dir()}")
 
 

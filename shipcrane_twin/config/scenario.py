@@ -151,7 +151,7 @@ def time_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     }
 
     def undivided(step: int) -> list[str]:
-        return [key for key, value in periods_ns.items() if value % step]
+        return [key for key, value in periods_ns.items() if abs(value - step * round(value / step)) > 1e-3]
 
     wrong = undivided(scenario.step_ns)
     if not wrong:

@@ -79,7 +79,9 @@ def describe(cls: type, detail: ErrorDetails, where: typing.Callable[[Sequence[A
         return f"{place}: {key} is missing; add it"
     message = detail["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     hint = ""
-    if isinstance(value, str) and re.fullmatch(r"[-+]?\d+\.?\d*[eE]\d+", value.strip()):
+    if kind == "dataclass_type":
+        message = "a group with the keys " + ", ".join(known_keys(cls, path))
+    if isinstance(value, str) and re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+", value.strip()):
         hint = "; YAML reads this as text, write it with a point and a signed exponent, like 5.0e+5"
     return f"{place}: {key} is {shown(value)}, expected {message}{hint}"
 

@@ -1,9 +1,10 @@
 """Settings of the ship: hull, wind areas, thrusters and dynamic positioning."""
 
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Len
+from pydantic import AfterValidator
 
 from shipcrane_twin.config.settings import Flag, Matrix6, Number, Text, Vector3, settings
 
@@ -11,30 +12,55 @@ Positive = Annotated[Number, Gt(0)]
 NotNegative = Annotated[Number, Ge(0)]
 CurrentRow = tuple[Number, Number, Number, Number]
 WindRow = tuple[Number, Number, Number, Number, Number]
+Rows = TypeVar("Rows", bound=tuple[tuple[float, ...], ...])
+
+
+def check_directions(rows: Rows) -> Rows:
+    """Raise ValueError unless the first column runs uniformly from 0 to 180 degrees."""
+    if not np.allclose([row[0] for row in rows], np.linspace(0.0, 180.0, len(rows))):
+        raise ValueError("directions from 0 to 180 degrees in equal steps in the first column")
+    return rows
+
+
+def check_matrix(rows: Rows) -> Rows:
+    """Raise ValueError at a matrix that no hull can have."""
+    matrix = np.array(rows)
+    largest = np.abs(matrix).max()
+    if not np.allclose(matrix, matrix.T, rtol=1e-6, atol=1e-6 * largest):
+        raise ValueError("a symmetric matrix")
+    if np.linalg.eigvalsh(matrix).min() < -1e-9 * largest:
+        raise ValueError("a matrix without negative eigenvalues")
+    return rows
+
+
+def check_restoring(rows: Rows) -> Rows:
+    """Raise ValueError unless the ship floats upright, or at a stiffness that the hull model would not read."""
+    unread = np.array(rows)
+    if np.linalg.eigvalsh(unread[2:5, 2:5]).min() <= 0.0:
+        raise ValueError("positive stiffness in heave, roll and pitch")
+    unread[[2, 2, 3, 4, 4], [2, 4, 3, 2, 4]] = 0.0
+    if unread.any():
+        raise ValueError("zeros outside heave, roll, pitch and heave with pitch, all that this hull has")
+    return rows
+
+
+CurrentTable = Annotated[tuple[CurrentRow, ...], Len(2), AfterValidator(check_directions)]
+WindTable = Annotated[tuple[WindRow, ...], Len(2), AfterValidator(check_directions)]
+HullMatrix = Annotated[Matrix6, AfterValidator(check_matrix)]
 
 
 @settings
 class HullConfig:
     """Water loads about the CoG; matrices in forward-right-down axes, SI units, as ship data has them."""
 
-    added_mass_frd: Matrix6
-    damping_frd: Matrix6
-    restoring_frd: Matrix6
+    added_mass_frd: HullMatrix
+    damping_frd: HullMatrix
+    restoring_frd: Annotated[HullMatrix, AfterValidator(check_restoring)]
     roll_quadratic_n_m_s2: NotNegative
     yaw_quadratic_n_m_s2: NotNegative
     current_front_area_m2: Positive
     current_side_area_m2: Positive
-    current_table: Annotated[tuple[CurrentRow, ...], Len(2)]
-
-    def __post_init__(self) -> None:
-        """Refuse matrices that no hull can have."""
-        for name in ("added_mass_frd", "damping_frd", "restoring_frd"):
-            matrix = np.array(getattr(self, name))
-            if not np.allclose(matrix, matrix.T, rtol=1e-6, atol=1e-6 * np.abs(matrix).max()):
-                raise ValueError(f"a symmetric matrix in {name}")
-            if np.linalg.eigvalsh(matrix).min() < -1e-9 * np.abs(matrix).max():
-                raise ValueError(f"a matrix without negative eigenvalues in {name}")
-        check_directions("current_table", self.current_table)
+    current_table: CurrentTable
 
 
 @settings
@@ -43,11 +69,7 @@ class WindAreasConfig:
 
     front_area_m2: Positive
     side_area_m2: Positive
-    table: Annotated[tuple[WindRow, ...], Len(2)]
-
-    def __post_init__(self) -> None:
-        """Refuse a table that is not uniform from 0 to 180 degrees."""
-        check_directions("table", self.table)
+    table: WindTable
 
 
 @settings
@@ -110,10 +132,3 @@ class DpConfig:
     reference_turn_max_deg_s: Annotated[Number, Gt(0), Le(10)]
     reference_turn_accel_max_deg_s2: Annotated[Number, Gt(0), Le(10)]
     setpoint: SetpointConfig
-
-
-def check_directions(name: str, rows: tuple[tuple[float, ...], ...]) -> None:
-    """Raise ValueError unless the first column runs uniformly from 0 to 180 degrees."""
-    column = [row[0] for row in rows]
-    if not np.allclose(column, np.linspace(0.0, 180.0, len(rows))):
-        raise ValueError(f"directions from 0 to 180 degrees in equal steps in the first column of {name}")

@@ -9,12 +9,14 @@ from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError, nearest
 from shipcrane_twin.cosim.build import crane_chain, crane_drives
 from shipcrane_twin.cosim.coupling import SCHEMES
-from shipcrane_twin.cosim.initial import at_rest
+from shipcrane_twin.cosim.initial import Rest, at_rest
+from shipcrane_twin.cosim.subsystems import make_subsystem
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import ChainParams
 from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
-from shipcrane_twin.physics.crane_dynamics import mass_matrix
+from shipcrane_twin.physics.crane_dynamics import bias_forces, mass_matrix
 from shipcrane_twin.physics.crane_motion import servo_gains
+from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
 
 RK4_REACH = 2.5
 """Largest rate times step that classical Runge-Kutta integrates stably (2.79 for real rates), with a margin."""
@@ -35,6 +37,7 @@ def check_buildable(scenario: Scenario) -> None:
         chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
         at_rest(scenario)
+        make_subsystem("crane", scenario)
     except ValueError as err:
         raise ConfigError(f"{name}: {err}") from None
     ends = np.sort([joints_from_lengths(drives, drives.length_min), joints_from_lengths(drives, drives.length_max)], 0)
@@ -45,7 +48,24 @@ def check_buildable(scenario: Scenario) -> None:
                 f"{name}: crane.initial_joints has {value:g} for {link.joint}, "
                 f"expected {low:.4f} to {high:.4f}, where its cylinder ends"
             )
+    check_strength(scenario, chain, rest)
     check_servo_step(scenario, chain, ends)
+
+
+def check_strength(scenario: Scenario, chain: ChainParams, rest: Rest) -> None:
+    """Raise ConfigError if a joint's drive cannot hold crane and load at the start."""
+    rot = matrix_from_quat(rest.vessel[3:7])
+    still = np.zeros(3)
+    proper_b = scenario.constants.gravity_m_s2 * rot[2]
+    force_b = rotate_to_body(rot, rest.wire_force_w)
+    efforts = bias_forces(chain, rest.joints, np.zeros_like(rest.joints), still, still, proper_b, force_b)
+    for link, effort in zip(scenario.crane.links, efforts, strict=True):
+        if abs(effort) > link.drive.effort_max:
+            raise ConfigError(
+                f"{scenario.name}: the {link.joint} needs {abs(effort):.3g} to hold crane and load at the start, but its "
+                f"effort_max is {link.drive.effort_max:.3g}; lighten payload.mass_kg = {scenario.payload.mass_kg:g}, "
+                "shorten the radius (crane.initial_joints) or strengthen the drive"
+            )
 
 
 def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> None:

@@ -18,7 +18,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
         "/crane/base_wrench",
         "/crane/base_inertia",
     ),
-    "crane": ("/vessel/odom", "/vessel/accel", "/payload/wire_wrench"),
+    "crane": ("/vessel/odom", "/vessel/accel", "/payload/wire_wrench", "/payload/felt_inertia"),
     "payload": ("/crane/tip",),
 }
 """The topics that each subsystem waits for in every step."""
@@ -26,7 +26,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
 FEEDBACK: dict[tuple[str, str], str] = {
     ("vessel", "environment"): "ship motion to wind loads",
     ("crane", "vessel"): "crane wrench and inertia to ship",
-    ("payload", "crane"): "wire force to crane tip",
+    ("payload", "crane"): "wire force and felt mass to crane tip",
 }
 """Every link (from, to) against the direction of the chain, with its name."""
 
@@ -40,9 +40,10 @@ class Scheme:
     name : str
         As in the scenario's ``coupling``.
     carries_inertia : bool
-        The vessel adds the crane's frozen-joint inertia and weight to its own, and the crane's wrench
-        counts without that part. The ship's immediate reaction to the crane is then inside its own
-        equations instead of a step late.
+        Each part carries the inertia of what hangs on it in its own equations: the ship the crane's
+        (joints frozen) with its weight, the crane that of the load along the wire. The wrench and the
+        force that come back a step late count without these parts. The immediate reaction of one part
+        to the other is then never late.
     about : str
         For people.
     """
@@ -60,6 +61,6 @@ SCHEMES = {
     scheme.name: scheme
     for scheme in (
         Scheme("in_turn", False, "in turn, motion interpolated, mean forces fed back"),
-        Scheme("in_turn+inertia", True, "in_turn, and the ship carries the crane's inertia and weight"),
+        Scheme("in_turn+inertia", True, "in_turn, and each part carries the inertia of what hangs on it"),
     )
 }

@@ -144,6 +144,13 @@ TOPICS: tuple[Topic, ...] = (
         about="Force of the wire on the crane tip, ENU axes, mean over the step [N]; torque zero.",
     ),
     Topic(
+        name="/payload/felt_inertia",
+        type=INERTIA,
+        publisher="payload",
+        frame="map",
+        about="Mass that the crane carries along the wire in its own equations [kg]; zero while slack; the rest is zero.",
+    ),
+    Topic(
         name="/payload/odom",
         type=ODOMETRY,
         publisher="payload",

@@ -83,6 +83,7 @@ def crane_macro_step(
     odom: Array,
     accel: Array,
     force_w: Array,
+    felt_mass: float,
     n_micro: int,
     step_s: float,
 ) -> tuple[Array, Array, Array, Array, Array, Array]:
@@ -96,12 +97,15 @@ def crane_macro_step(
         [m/s2].
     state, command : float64, shapes (4 n,), (n,)
         See `crane_motion.crane_step`.
-    before : float64, shape (13,)
-        Quaternion of the ship and `base_motion` at the step's start.
+    before : float64, shape (16,)
+        At the step's start: quaternion of the ship, `base_motion`, and the tip's mean proper acceleration
+        over the last step in the world [m/s2].
     odom, accel : float64, shapes (13,), (6,)
         The ship at the step's end.
     force_w : float64, shape (3,)
-        Force of the wire on the tip, held in the world over the step [N].
+        Force of the wire on the tip, mean over the last step, held in the world over this one [N].
+    felt_mass : float
+        Mass that the tip carries along the wire [kg], see `crane_load`; 0 for none.
     n_micro, step_s : int, float
         Micro steps in the macro step, macro step [s].
 
@@ -115,20 +119,23 @@ def crane_macro_step(
         Odometry of the tip at the end of the step.
     inertia : float64, shape (10,)
         The crane as one rigid body at the end of the step.
-    after : float64, shape (13,)
+    after : float64, shape (16,)
         ``before`` of the next step.
     """
-    after = np.empty(13)
+    after = np.empty(16)
     after[:4] = odom[3:7]
-    after[4:] = base_motion(odom, accel, base_b, gravity)
-    start, end = np.empty(12), np.empty(12)
-    start[:9] = before[4:]
-    start[9:] = rotate_to_body(matrix_from_quat(before[:4]), force_w)
-    end[:9] = after[4:]
-    end[9:] = rotate_to_body(matrix_from_quat(after[:4]), force_w)
-    new, wrench_b, effort, _, tip_b, inertia = crane_step(
+    after[4:13] = base_motion(odom, accel, base_b, gravity)
+    rot_start, rot_end = matrix_from_quat(before[:4]), matrix_from_quat(after[:4])
+    start, end = np.empty(16), np.empty(16)
+    for base, motion, rot in ((start, before, rot_start), (end, after, rot_end)):
+        base[:9] = motion[4:13]
+        base[9:12] = rotate_to_body(rot, force_w)
+        base[12:15] = rotate_to_body(rot, before[13:])
+        base[15] = felt_mass
+    new, wrench_b, effort, _, tip_b, inertia, tip_acc_b = crane_step(
         chain, servo, limits, state, command, start, end, n_micro, step_s
     )
+    after[13:] = 0.5 * (rotate_to_world(rot_start, tip_acc_b) + rotate_to_world(rot_end, tip_acc_b))
     return new, effort, wrench_b, tip_odometry(tip_b, odom, base_b), inertia, after
 
 

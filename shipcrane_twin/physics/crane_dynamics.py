@@ -5,7 +5,8 @@ r"""Rigid-body dynamics of a crane on a moving base.
 The base motion enters as three vectors in crane_base axes: angular velocity w0 [rad/s], angular
 acceleration al0 [rad/s2] and proper acceleration f0 = acceleration of the crane_base origin minus
 the gravity vector [m/s2] (at rest and upright: (0, 0, +9.80665)). Kernels that take all of it at once
-read `base`, float64 of shape (12,): w0, al0, f0, and the force on the tip tip_force_b [N].
+read `base`, float64 of shape (16,): w0, al0, f0, the force on the tip tip_force_b [N], and for
+`crane_load` the tip's mean proper acceleration over the last step [m/s2] and the mass carried there [kg].
 
 All is exact for rigid links; flexibility of boom and oil belongs to the servo model.
 """
@@ -56,7 +57,7 @@ def fill_mass_matrix(chain: ChainParams, work: ChainWork) -> None:
 
 @njit(cache=True)
 def fill_bias(chain: ChainParams, qd: Array, base: Array, work: ChainWork) -> None:
-    """Fill bias and wrench_b of `work` for joint rates qd (n,) and base (12,); `place_links` goes first."""
+    """Fill bias, wrench_b and tip_acc_b of `work` for joint rates qd (n,) and base (16,), after `place_links`."""
     joints = chain.kind.shape[0]
     wx, wy, wz = base[0], base[1], base[2]
     ax, ay, az = base[3], base[4], base[5]
@@ -85,6 +86,9 @@ def fill_bias(chain: ChainParams, qd: Array, base: Array, work: ChainWork) -> No
         gx, gy, gz = cross(wx, wy, wz, lx, ly, lz)
         cx, cy, cz = cross(cx, cy, cz, kx, ky, kz)
         store_row(work.wrench_b, i, kx, ky, kz, ux + gx + cx, uy + gy + cy, uz + gz + cz)
+    tx, ty, tz = work.origin_b[joints, 0], work.origin_b[joints, 1], work.origin_b[joints, 2]
+    sx, sy, sz = _swing(wx, wy, wz, ax, ay, az, tx - px, ty - py, tz - pz)
+    work.tip_acc_b[0], work.tip_acc_b[1], work.tip_acc_b[2] = fx + sx, fy + sy, fz + sz
     _gather_inward(joints, base, work)
 
 
@@ -164,8 +168,8 @@ def solve_in_place(matrix: Array, x: Array) -> bool:
 
 @njit(cache=True)
 def pack_base(w0: Array, al0: Array, f0: Array, tip_force_b: Array) -> Array:
-    """Return `base` (12,) from its four vectors (3,), all in crane_base axes."""
-    base = np.empty(12)
+    """Return `base` (16,) from its four vectors (3,), all in crane_base axes, with no mass carried."""
+    base = np.zeros(16)
     base[0:3] = w0
     base[3:6] = al0
     base[6:9] = f0

@@ -34,6 +34,8 @@ class ChainWork(NamedTuple):
         joint accelerations are zero, tip force deducted.
     mass_matrix : float64, shape (n, n)
         Joint-space mass matrix.
+    tip_acc_b : float64, shape (3,)
+        Proper acceleration of the tip while all joint accelerations are zero [m/s2].
     bias : float64, shape (n,)
         Joint efforts needed at zero joint acceleration.
     """
@@ -46,6 +48,7 @@ class ChainWork(NamedTuple):
     momentum_b: Array
     wrench_b: Array
     mass_matrix: Array
+    tip_acc_b: Array
     bias: Array
 
 
@@ -61,6 +64,7 @@ def new_work(joints: int) -> ChainWork:
         np.zeros((joints, 6)),
         np.zeros((joints, 6)),
         np.zeros((joints, joints)),
+        np.zeros(3),
         np.zeros(joints),
     )
 

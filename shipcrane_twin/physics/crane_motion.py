@@ -24,6 +24,7 @@ from shipcrane_twin.physics.crane_dynamics import (
     solve_in_place,
 )
 from shipcrane_twin.physics.crane_inertia import fill_composite
+from shipcrane_twin.physics.crane_load import add_tip_acceleration, hang_load
 from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links
 from shipcrane_twin.physics.crane_reference import FLAG_EFFORT, MotionLimits, advance_reference
 
@@ -78,6 +79,7 @@ def _derivatives(
     place_links(chain, q, work)
     fill_mass_matrix(chain, work)
     fill_bias(chain, qd, base, work)
+    hang_load(base, work)
     for i in range(q.shape[0]):
         pull = servo.kp[i] * (q_ref[i] - q[i]) + servo.kd[i] * (qd_ref[i] - qd[i])
         most = servo.effort_max[i]
@@ -97,8 +99,8 @@ def _check_step(
 ) -> None:
     if state.shape[0] != 4 * n or command.shape[0] != n:
         raise ValueError("crane_step: expected a state of 4 n and a command of n values for n joints")
-    if base_prev.shape[0] != 12 or base_next.shape[0] != 12:
-        raise ValueError("crane_step: base_prev and base_next hold 12 values: w0, al0, f0, tip_force_b")
+    if base_prev.shape[0] != 16 or base_next.shape[0] != 16:
+        raise ValueError("crane_step: base_prev and base_next hold 16 values, see crane_dynamics")
     if n_micro < 1 or not dt > 0.0:
         raise ValueError("crane_step: expected n_micro >= 1 and dt > 0")
 
@@ -121,7 +123,7 @@ def crane_step(
     base_next: Array,
     n_micro: int,
     dt: float,
-) -> tuple[Array, Array, Array, Ints, Array, Array]:
+) -> tuple[Array, Array, Array, Ints, Array, Array, Array]:
     """Advance the crane over one macro step by n_micro classical Runge-Kutta steps.
 
     Parameters
@@ -132,8 +134,8 @@ def crane_step(
         q, qd, q_ref, qd_ref at the start of the step; left untouched.
     command : float64, shape (n,)
         Joint rates wanted over the step [rad/s or m/s].
-    base_prev, base_next : float64, shape (12,)
-        w0, al0, f0 and tip_force_b (see `crane_dynamics`) at start and end, each in the base axes of its
+    base_prev, base_next : float64, shape (16,)
+        Base motion and load (see `crane_dynamics`) at start and end, each in the base axes of its
         instant; linear in between.
     n_micro : int
         Runge-Kutta steps, at least 1; stable while the fastest servo mode [rad/s] times dt / n_micro < 2.
@@ -155,6 +157,8 @@ def crane_step(
         Tip at the end of the step, see `fill_tip`.
     inertia_b : float64, shape (10,)
         Composite inertia at the end of the step, see `composite_inertia`.
+    tip_acc_b : float64, shape (3,)
+        Mean over the step of the tip's proper acceleration [m/s2].
 
     Raises
     ------
@@ -170,7 +174,7 @@ def crane_step(
     work = new_work(n)
     stage_q, stage_qd, sum_qd, sum_qdd = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     now_ref, now_qd_ref, effort, qdd = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    base, wrench_b, mean_b = np.empty(12), np.empty(6), np.zeros(6)
+    base, wrench_b, mean_b, tip_acc_b = np.empty(16), np.empty(6), np.zeros(6), np.zeros(3)
     h = dt / n_micro
     finite = True
     for micro in range(n_micro):
@@ -189,6 +193,7 @@ def crane_step(
             finite &= _derivatives(
                 chain, servo, stage_q, stage_qd, now_ref, now_qd_ref, base, work, effort, qdd, wrench_b, flags
             )
+            add_tip_acceleration(work, qdd, weight / n_micro, tip_acc_b)
             for k in range(6):
                 mean_b[k] += weight / n_micro * wrench_b[k]
             reach = h if stage == 2 else 0.5 * h
@@ -211,4 +216,4 @@ def crane_step(
     place_links(chain, q, work)
     fill_tip(chain, qd, work.rotation_b, work.origin_b, tip_b)
     fill_composite(chain, work, inertia_b)
-    return result, mean_b, effort, flags, tip_b, inertia_b
+    return result, mean_b, effort, flags, tip_b, inertia_b, tip_acc_b

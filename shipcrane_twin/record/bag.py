@@ -13,15 +13,16 @@ from shipcrane_twin.cosim.topics import Topic
 LIBRARY = "shipcrane_twin"
 COMPRESSION = {"zstd": CompressionType.ZSTD, "none": CompressionType.NONE}
 QOS = """- history: keep_last
-  depth: {depth}
+  depth: 10
   reliability: reliable
   durability: volatile
-  deadline: {{sec: 9223372036, nsec: 854775807}}
-  lifespan: {{sec: 9223372036, nsec: 854775807}}
+  deadline: {sec: 9223372036, nsec: 854775807}
+  lifespan: {sec: 9223372036, nsec: 854775807}
   liveliness: automatic
-  liveliness_lease_duration: {{sec: 9223372036, nsec: 854775807}}
+  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}
   avoid_ros_namespace_conventions: false
 """
+"""Of every topic, in the file and in metadata.yaml: readers match the two."""
 
 
 class BagWriter:
@@ -85,7 +86,7 @@ class BagWriter:
                 topic.name,
                 "cdr",
                 schemas[topic.type],
-                {"offered_qos_profiles": QOS.format(depth=10), "topic_type_hash": self._hashes[topic.type]},
+                {"offered_qos_profiles": QOS, "topic_type_hash": self._hashes[topic.type]},
             )
         return channels
 
@@ -125,7 +126,7 @@ class BagWriter:
                         "name": topic.name,
                         "type": topic.type,
                         "serialization_format": "cdr",
-                        "offered_qos_profiles": [],
+                        "offered_qos_profiles": yaml.safe_load(QOS),
                         "type_description_hash": self._hashes[topic.type],
                     },
                     "message_count": self.counts[topic.name],

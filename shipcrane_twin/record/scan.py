@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 _MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")  # opcode, length of the content
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log time, publish time
-# What the parsers and decompressors raise on damaged bytes.
-_DAMAGE = (
+DAMAGE = (
     McapError,
     ValueError,
     LookupError,
@@ -36,6 +35,7 @@ _DAMAGE = (
     struct.error,
     zstandard.ZstdError,
 )
+"""What the parsers and decompressors raise on damaged bytes."""
 
 
 class BagError(ValueError):
@@ -80,7 +80,7 @@ def scan_file(file: Path) -> Iterator[Batch]:
         for data, where in _regions(whole, file):
             try:
                 batches = _batches(data, where, schemas, channels)
-            except _DAMAGE as error:
+            except DAMAGE as error:
                 raise _damaged(file, where, error) from error
             yield from batches
 
@@ -111,7 +111,7 @@ def _regions(whole: mmap.mmap, file: Path) -> Iterator[tuple[bytes, str]]:
                 chunk = Chunk.read(ReadDataStream(BytesIO(whole[head:end])))
                 content, length = get_chunk_data_stream(chunk, validate_crc=True)
                 data = content.read(length)
-            except _DAMAGE as error:
+            except DAMAGE as error:
                 raise _damaged(file, where, error) from error
             yield data, where
         elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE):

@@ -142,6 +142,7 @@ class ClockNode:
                 missing.append("recorder (/recorder/progress)")
             if not missing:
                 refuse_rivals(self.node, ["/clock", *DONE_TOPIC.values(), "/recorder/progress"])
+                self._silent = []
                 return
             self._silent = sorted({text.split()[0] for text in missing})
             self._executor.spin_once(timeout_sec=0.02)

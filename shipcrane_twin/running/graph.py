@@ -5,8 +5,10 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,11 +41,14 @@ class GraphOptions:
     record : bool
     order : sequence of str
         Subsystems in the order in which their processes are started.
+    silence_timeout_s : float
+        Wall time after which a clock that says nothing has failed [s]; it watches the others itself.
     """
 
     folder: Path
     record: bool
     order: Sequence[str] = CHAIN
+    silence_timeout_s: float = 10.0
 
 
 class Graph:
@@ -73,7 +78,8 @@ class Graph:
             self._start()
             self._watch(progress)
         finally:
-            self._stop()
+            with undisturbed():
+                self._stop()
 
     def _start(self) -> None:
         (self._options.folder / "log").mkdir(exist_ok=True)
@@ -83,9 +89,12 @@ class Graph:
 
     def _watch(self, progress: Progress) -> None:
         limit = time.monotonic() + START_LIMIT_S
+        pulse, pulse_at = 0, time.monotonic()
         while True:
             status = read_status(self._options.folder)
             progress(status)
+            if (beat := status_time(self._options.folder)) != pulse:
+                pulse, pulse_at = beat, time.monotonic()
             if status["state"] == "running" and not self._shared:
                 # a node that is killed cannot be asked later
                 self._shared = {name for process in self._processes.values() for name in mapped_names(process.pid)}
@@ -99,7 +108,9 @@ class Graph:
             if status["state"] == "silent":
                 name = status["silent"][0]
                 raise NodeFailure(self._obituary(name, f"fell silent at simulated time {status['time_s']:.3f} s"))
-            if status["state"] == "waiting for nodes" and time.monotonic() > limit:
+            if pulse and time.monotonic() - pulse_at > self._options.silence_timeout_s:
+                raise NodeFailure(self._obituary("clock", f"fell silent at simulated time {status['time_s']:.3f} s"))
+            if status["state"] in ("starting", "waiting for nodes") and time.monotonic() > limit:
                 missing = status["silent"] or ["clock"]
                 raise NodeFailure(self._obituary(missing[0], f"did not join within {START_LIMIT_S:g} s"))
             time.sleep(WATCH_PERIOD_S)
@@ -155,6 +166,29 @@ def read_status(folder: Path) -> dict[str, Any]:
     except FileNotFoundError:
         return {"state": "starting", "time_s": 0.0, "real_time_factor": 0.0, "silent": []}
     return status
+
+
+def status_time(folder: Path) -> int:
+    """Return when the clock last said something of itself [ns]; 0 if it never did."""
+    try:
+        return (folder / "status.json").stat().st_mtime_ns
+    except FileNotFoundError:
+        return 0
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Ignore SIGINT and SIGTERM for a while: a second Ctrl-C must not leave nodes behind."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # signals do not come here
+        return
+    # not SIG_IGN, which nodes would inherit
+    before = {number: signal.signal(number, lambda *_: None) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def describe_exit(code: int) -> str:

@@ -7,15 +7,20 @@ from pathlib import Path
 from typing import Any, Literal
 
 from shipcrane_twin import __version__
+from shipcrane_twin.config.load import scenario_yaml
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import plain
 from shipcrane_twin.cosim.participant import state_digest
-from shipcrane_twin.record.read import read_signals
+from shipcrane_twin.cosim.topics import TOPICS
+from shipcrane_twin.record.read import Signals, read_signals
+from shipcrane_twin.record.rescue import is_broken, rescue_bag
 from shipcrane_twin.report.page import write_report
 from shipcrane_twin.report.summary import find_gaps, summarise
 from shipcrane_twin.running.folder import node_results
 from shipcrane_twin.running.graph import Graph, GraphOptions, NodeFailure
 from shipcrane_twin.running.local import run_inline
+
+RECORDED = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
 
 Mode = Literal["graph", "inline"]
 Progress = Callable[[dict[str, Any]], None]
@@ -63,7 +68,8 @@ def run_scenario(scenario: Scenario, folder: Path, mode: Mode, record: bool, pro
         if mode == "inline":
             result = run_inline(scenario, folder, record, progress)
         else:
-            Graph(GraphOptions(folder, record)).run(progress)
+            options = GraphOptions(folder, record, silence_timeout_s=scenario.lockstep.silence_timeout_s)
+            Graph(options).run(progress)
     except NodeFailure as err:
         failure = str(err)
     except KeyboardInterrupt:
@@ -95,6 +101,10 @@ def conclude(
     interrupted: bool,
 ) -> Outcome:
     """Sum a run up from its bag, write summary and report."""
+    signals = recorded_signals(scenario, folder) if record else None
+    complete = not failure and not interrupted
+    if not complete and not result["steps"] and signals is not None:
+        result["steps"] = recorded_steps(signals, scenario.step_ns)  # who counts them was the one that ended
     simulated_s = result["steps"] * scenario.step_ns / 1e9
     wall_s = result["wall_time_s"]
     summary: dict[str, Any] = {
@@ -109,11 +119,10 @@ def conclude(
         "wall_time_s": wall_s,
         "real_time_factor": simulated_s / wall_s if wall_s > 0.0 else 0.0,
         "state_digest": result["state_digest"],
-        "complete": not failure and not interrupted,
+        "complete": complete,
     }
     report = None
-    if record:
-        signals = read_signals(folder / "bag")
+    if signals is not None:
         summary |= summarise(signals, plain(scenario))
         gaps = find_gaps(
             signals,
@@ -121,12 +130,36 @@ def conclude(
             macro_step_ms=scenario.macro_step_ms,
             telemetry_period_ms=scenario.telemetry_period_ms,
         )
-        if gaps and summary["complete"]:
+        if not complete:
+            gaps = [gap for gap in gaps if gap.first_s is not None]  # some were a little further than the slowest
+        elif gaps:
             failure = "the bag is not complete: " + "; ".join(map(str, gaps))
         summary["gaps"] = [str(gap) for gap in gaps]
     if failure:
         summary["failure"] = failure
     (folder / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-    if record:
+    if signals is not None:
         report = write_report(folder)
     return Outcome(summary, report, failure, interrupted)
+
+
+def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:
+    """Return the content of a run's bag, mended where the recorder was killed; None if there is no bag."""
+    bag = folder / "bag"
+    if not bag.exists():
+        return None
+    if is_broken(bag):
+        rescue_bag(
+            bag,
+            RECORDED,
+            compression=scenario.recording.compression,
+            chunk_kib=scenario.recording.chunk_kib,
+            metadata={"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},
+        )
+    return read_signals(bag)
+
+
+def recorded_steps(signals: Signals, step_ns: int) -> int:
+    """Return the last step of which every subsystem's messages are there; 0 if there is none."""
+    stamps = [signals.series[t.name].stamp_ns for t in TOPICS if t.rate == "step" and t.name in signals.series]
+    return min((int(one[-1]) // step_ns if len(one) else 0 for one in stamps), default=0)

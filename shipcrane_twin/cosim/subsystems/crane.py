@@ -7,6 +7,7 @@ import numpy as np
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
+from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import seconds
@@ -35,6 +36,7 @@ class Crane:
         self._step_s = seconds(scenario.step_ns)
         self._micro = math.ceil(scenario.macro_step_ms / crane.servo.micro_step_max_ms)
         self._telemetry_every = scenario.telemetry_every
+        self._carries = SCHEMES[scenario.coupling].carries_inertia
         self.commands = JointCommands(scenario.joint_names, scenario.operations)
         self._command = np.zeros(len(crane.links))
 
@@ -61,7 +63,8 @@ class Crane:
         odom = np.zeros(13)
         odom[:3] = rest.tip_w - rot @ (self._base + rest.tip_b)
         odom[3:7] = rest.vessel[3:7]
-        self._before = np.concatenate((odom[3:7], base_motion(odom, np.zeros(6), self._base, self._gravity)))
+        motion = base_motion(odom, np.zeros(6), self._base, self._gravity)
+        self._before = np.concatenate((odom[3:7], motion, [0.0, 0.0, self._gravity]))
         tip_b = np.concatenate([part.ravel() for part in tip_state(self._chain, q, zeros)])
         self._tip = tip_odometry(tip_b, odom, self._base)
         self._wrench = base_wrench(self._chain, q, zeros, zeros, still, still, proper_b, force_b)
@@ -86,6 +89,7 @@ class Crane:
             inputs["/vessel/odom"],
             inputs["/vessel/accel"],
             inputs["/payload/wire_wrench"][:3],
+            inputs["/payload/felt_inertia"][0] * self._carries,
             self._micro,
             self._step_s,
         )

@@ -57,7 +57,9 @@ class Payload:
         wrench[:3] = self._force_w
         odom = np.zeros(13)
         odom[:3], odom[6], odom[7:10] = self._state[:3], 1.0, self._state[3:6]
-        out = {"/payload/wire_wrench": wrench, "/payload/odom": odom}
+        felt = np.zeros(10)
+        felt[0] = self._state[8] if self._tension_max > 0.0 else 0.0
+        out = {"/payload/wire_wrench": wrench, "/payload/felt_inertia": felt, "/payload/odom": odom}
         if k % self._telemetry_every == 0:
             out["/winch/joint_states"] = np.array([self._state[6], self._state[7], self._tension_max])
             out["/winch/joint_command_applied"] = self._command

@@ -1,0 +1,100 @@
+"""A short scenario in which every part acts, and stages in which limits and single table rows do."""
+
+import copy
+
+from shipcrane_twin.config.load import load_scenario
+from shipcrane_twin.config.settings import plain
+from shipcrane_twin.cosim.build import crane_drives
+from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
+
+MOVES = {
+    "slew": {"velocity_rad_s": 0.005},
+    "boom": {"velocity_rad_s": 0.005},
+    "knuckle": {"velocity_rad_s": 0.005},
+    "telescope": {"velocity_m_s": 0.02},
+    "winch": {"velocity_m_s": 0.05},
+}
+
+
+def put(data, path, value):
+    """Set one value in nested data, in place."""
+    for key in path[:-1]:
+        data = data[key]
+    data[path[-1]] = value
+
+
+def look(data, path):
+    """Return the value at a path of nested data."""
+    for key in path:
+        data = data[key]
+    return data
+
+
+def busy():
+    """Eight tenths of a second with DP, weather, all joints and the winch at work, and a release."""
+    data = plain(load_scenario("case2"))
+    data["duration_s"] = 0.8
+    data["environment"] = {
+        "current_speed_m_s": 0.5,
+        "current_direction_to_deg": 33.0,
+        "wind_speed_m_s": 7.0,
+        "wind_direction_to_deg": 71.0,
+    }
+    data["dp"]["enabled_at_s"] = 0.0
+    data["dp"]["setpoint"] = {"north_m": 1.0, "east_m": -2.0, "heading_deg": 10.0}
+    data["operations"] = [
+        {"label": joint, "joint": joint, "from_s": 0.1, "to_s": 0.6, **speed} for joint, speed in MOVES.items()
+    ]
+    data["events"] = [{"label": "drop", "at_s": 0.4, "event": "release_payload"}]
+    for i in range(6):  # so that every pair of modes may be coupled by damping
+        data["vessel"]["hull"]["damping_frd"][i][i] += 1e4
+    return data
+
+
+def weak():
+    """Drives too weak for what is asked of them, and a controller that may hardly ask."""
+    data = busy()
+    for link, effort in zip(data["crane"]["links"], (50.0, 1e4, 5e3, 1e3), strict=True):
+        link["drive"]["effort_max"] = effort
+    data["dp"]["load_max"] = [1.0, 1.0, 10.0]
+    return data
+
+
+def slow():
+    """Drives and a reference at their greatest speed, and thrusters at their greatest push."""
+    data = busy()
+    for link in data["crane"]["links"]:
+        key = "speed_max_rad_s" if "speed_max_rad_s" in link["drive"] else "speed_max_m_s"
+        link["drive"][key] = 0.001
+    for thruster in data["vessel"]["thrusters"]:
+        thruster["thrust_max_n"] = 1.0
+    data["winch"]["speed_max_m_s"] = 0.02
+    data["dp"] |= {"reference_speed_max_m_s": 0.002, "reference_turn_max_deg_s": 0.005}
+    return data
+
+
+def at_ends(sign):
+    """All cylinders and the wire a little before an end (1 long, -1 short), and on their way to it."""
+    data = busy()
+    drives = crane_drives(load_scenario("case2").crane)
+    length = drives.length_max if sign > 0 else drives.length_min
+    places = joints_from_lengths(drives, length - sign * 0.0102)
+    data["crane"]["initial_joints"] = [data["crane"]["initial_joints"][0], *map(float, places[1:])]
+    for move in data["operations"]:
+        for key in ("velocity_rad_s", "velocity_m_s"):
+            if key in move:
+                move[key] *= sign * 10.0
+    winch = data["winch"]
+    winch["initial_length_m"] = winch["length_max_m"] - 0.01 if sign > 0 else winch["length_min_m"] + 0.01
+    return data
+
+
+def flow_along_row(path, data):
+    """Turn wind or current to the direction of the table row that a path leads to."""
+    angle = look(data, [*path[:-1], 0])
+    data = copy.deepcopy(data)
+    if "wind_areas" in path:
+        data["environment"]["wind_direction_to_deg"] = angle + 180.0
+    else:
+        data["environment"]["current_direction_to_deg"] = angle
+    return data

@@ -1,0 +1,135 @@
+"""Every number of the settings changes a run, is refused, or is one of a few that must not matter."""
+
+import copy
+import itertools
+
+import pytest
+from busy_scenario import at_ends, busy, flow_along_row, look, put, slow, weak
+from pydantic import TypeAdapter, ValidationError
+
+from shipcrane_twin.config.scenario import Scenario, problems
+from shipcrane_twin.cosim.inline import InlineRun
+
+READ = TypeAdapter(Scenario).validate_python
+
+WITHOUT_EFFECT_ON_PHYSICS = {
+    "seed": "nothing random yet",
+    "lockstep.run_ahead_steps": "order of computing only",
+    "lockstep.silence_timeout_s": "wall time only",
+    "lockstep.speed": "wall time only",
+    "recording.chunk_kib": "layout of the bag",
+    "dp.settled_after_s": "from when the summary judges position",
+    "vessel.thrusters.2.position_m.1": "a tunnel thruster pushes along this lever",
+}
+TABLES = (("vessel", "hull", "current_table"), ("vessel", "wind_areas", "table"))
+STIFFNESS = ("vessel", "hull", "restoring_frd")
+READ_STIFFNESS = {(2, 2), (2, 4), (4, 2), (3, 3), (4, 4)}
+
+
+def numbers(data, path=()):
+    """Yield the path of every number in nested data."""
+    children = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    for key, value in children:
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            yield (*path, key)
+        else:
+            yield from numbers(value, (*path, key))
+
+
+def digest(data):
+    scenario = READ(data)
+    if problems(scenario):
+        return None
+    run = InlineRun(scenario)
+    for _ in run.steps():
+        pass
+    return run.digest
+
+
+def small_changes(value, path):
+    """Values near the given one; times and periods move by whole macro steps."""
+    if isinstance(value, int):
+        return [value + 1]
+    if path[-1] in ("duration_s", "at_s", "from_s", "to_s", "enabled_at_s"):
+        return [value + 0.02]
+    if path[-1] in ("macro_step_ms", "telemetry_period_ms", "period_ms"):
+        return [value * 1.25, value * 1.2]
+    step = 0.01 * abs(value) or 1e-3
+    return [value + step, value - step]
+
+
+def changed(data, path, value):
+    out = copy.deepcopy(data)
+    put(out, path, value)
+    if path[-3:-2] in (("added_mass_frd",), ("damping_frd",), ("restoring_frd",)):  # which stay symmetric
+        put(out, (*path[:-2], path[-1], path[-2]), value)
+    return out
+
+
+def matters(path, stages, digests):
+    """Whether a small change of one number changes the digest of any of the stages."""
+    for name, stage in stages.items():
+        if name not in digests:
+            digests[name] = digest(stage)
+        for value in small_changes(look(stage, path), path):
+            try:
+                found = digest(changed(stage, path, value))
+            except ValidationError:
+                continue
+            if found not in (None, digests[name]):
+                return True
+    return False
+
+
+def is_row_direction(path):
+    return path[:-2] in TABLES and path[-1] == 0
+
+
+def is_unread_stiffness(path):
+    return path[:3] == STIFFNESS and path[3:] not in READ_STIFFNESS
+
+
+PATHS = list(numbers(busy()))
+
+
+def test_every_number_changes_the_run_or_is_listed():
+    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "long": at_ends(1), "short": at_ends(-1)}
+    digests, silent = {}, []
+    for path in PATHS:
+        if is_row_direction(path) or is_unread_stiffness(path):
+            continue
+        here, known = stages, digests
+        if path[:-2] in TABLES:
+            here, known = {path[-2]: flow_along_row(path, stages["busy"])}, {}
+        if not matters(path, here, known):
+            silent.append(".".join(map(str, path)))
+    assert sorted(silent) == sorted(WITHOUT_EFFECT_ON_PHYSICS)
+
+
+@pytest.mark.parametrize("table", TABLES, ids=["current", "wind"])
+def test_directions_of_a_table_are_refused_unless_even(table):
+    data = busy()
+    for row in range(len(look(data, table))):
+        with pytest.raises(ValidationError, match="in equal steps in the first column"):
+            READ(changed(data, (*table, row, 0), look(data, (*table, row, 0)) + 1.0))
+
+
+def test_stiffness_that_nothing_reads_is_refused():
+    data = busy()
+    for i, j in set(itertools.product(range(6), repeat=2)) - READ_STIFFNESS:
+        with pytest.raises(ValidationError, match=r"restoring_frd"):
+            READ(changed(data, (*STIFFNESS, i, j), 1e3))
+
+
+def test_kind_of_thruster_changes_the_run():
+    data = busy()
+    assert digest(changed(data, ("vessel", "thrusters", 0, "azimuthing"), False)) != digest(data)
+
+
+def test_scheme_changes_the_run():
+    data = busy()
+    assert digest(changed(data, ("coupling",), "in_turn")) != digest(data)
+
+
+def test_there_are_several_hundred_numbers():
+    assert len(PATHS) > 300
