@@ -36,7 +36,7 @@ def check_buildable(scenario: Scenario) -> None:
     try:
         chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
-        at_rest(scenario)
+        rest = at_rest(scenario)
         make_subsystem("crane", scenario)
     except ValueError as err:
         raise ConfigError(f"{name}: {err}") from None
@@ -62,8 +62,8 @@ def check_strength(scenario: Scenario, chain: ChainParams, rest: Rest) -> None:
     for link, effort in zip(scenario.crane.links, efforts, strict=True):
         if abs(effort) > link.drive.effort_max:
             raise ConfigError(
-                f"{scenario.name}: the {link.joint} needs {abs(effort):.3g} to hold crane and load at the start, but its "
-                f"effort_max is {link.drive.effort_max:.3g}; lighten payload.mass_kg = {scenario.payload.mass_kg:g}, "
+                f"{scenario.name}: the {link.joint} needs {abs(effort):.3g} to hold crane and load at the start, but "
+                f"its effort_max is {link.drive.effort_max:.3g}; lighten payload.mass_kg = {scenario.payload.mass_kg:g}, "
                 "shorten the radius (crane.initial_joints) or strengthen the drive"
             )
 

@@ -112,7 +112,7 @@ TOPICS: tuple[Topic, ...] = (
         type=ACCEL,
         publisher="vessel",
         frame="base_link",
-        about="Acceleration of base_link's origin without gravity, angular acceleration; base_link axes [m/s2, rad/s2].",
+        about="Acceleration of base_link's origin (no gravity) and angular; base_link axes [m/s2, rad/s2].",
     ),
     Topic(
         name="/crane/tip",
@@ -148,7 +148,7 @@ TOPICS: tuple[Topic, ...] = (
         type=INERTIA,
         publisher="payload",
         frame="map",
-        about="Mass that the crane carries along the wire in its own equations [kg]; zero while slack; the rest is zero.",
+        about="Mass of the load that the crane carries along the wire [kg]; zero while slack; the rest is zero.",
     ),
     Topic(
         name="/payload/odom",
