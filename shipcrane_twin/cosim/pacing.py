@@ -46,6 +46,11 @@ class Lockstep:
         return max(self.announced, limit)
 
     @property
+    def waits_for_recorder(self) -> bool:
+        """Whether the recorder alone keeps the clock from going on, or from ending."""
+        return self.recorded and self.announced >= min(self.last, self.recorded_to + RECORDER_LEAD_STEPS)
+
+    @property
     def finished(self) -> bool:
         """Whether all steps are done, and recorded where they are."""
         return self.slowest >= self.last and (not self.recorded or self.recorded_to >= self.last)

@@ -11,6 +11,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import cross
+from shipcrane_twin.physics.tables import by_direction
 
 
 class HullParams(NamedTuple):
@@ -93,17 +94,9 @@ def current_load(hull: HullParams, flow_x: float, flow_y: float) -> Array:
     Quadratic drag with coefficients by flow direction, port-starboard symmetric. The yaw
     coefficients are fitted to the whole moment, so they hold the Munk moment already.
     """
-    table = hull.current_table
     angle = np.arctan2(-flow_y, flow_x)  # clockwise from the bow, as the table has it
     side = 1.0 if angle >= 0.0 else -1.0
-    place = abs(angle) / np.pi * (table.shape[0] - 1)
-    row = min(int(place), table.shape[0] - 2)
-    part = place - row
-    speed2 = flow_x * flow_x + flow_y * flow_y
-    load = np.empty(3)
-    for i in range(3):
-        coefficient = (1.0 - part) * table[row, i + 1] + part * table[row + 1, i + 1]
-        load[i] = hull.current_scale[i] * coefficient * speed2
+    load = hull.current_scale * by_direction(hull.current_table, angle) * (flow_x * flow_x + flow_y * flow_y)
     load[1] *= -side  # FRD to FLU
     load[2] *= -side
     return load

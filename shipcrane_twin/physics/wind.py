@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.tables import by_direction
 
 
 class WindParams(NamedTuple):
@@ -39,14 +40,7 @@ def wind_load(wind: WindParams, air_x: float, air_y: float) -> Array:
     Blendermann's convention as in the ship's data: 0 is head wind (surge coefficient negative),
     sway, roll and yaw are positive for wind from port, which pushes to starboard.
     """
-    table = wind.table
-    from_x, from_y = -air_x, -air_y
-    angle = np.arctan2(from_y, from_x)  # FLU: positive when the wind comes from port
+    angle = np.arctan2(-air_y, -air_x)  # FLU: positive when the wind comes from port
     side = 1.0 if angle >= 0.0 else -1.0
-    place = abs(angle) / np.pi * (table.shape[0] - 1)
-    row = min(int(place), table.shape[0] - 2)
-    part = place - row
-    speed2 = air_x * air_x + air_y * air_y
-    coefficient = (1.0 - part) * table[row, 1:] + part * table[row + 1, 1:]
-    surge, sway, roll, yaw = wind.scale * coefficient * speed2
+    surge, sway, roll, yaw = wind.scale * by_direction(wind.table, angle) * (air_x * air_x + air_y * air_y)
     return np.array([surge, -side * sway, 0.0, side * roll, 0.0, -side * yaw])

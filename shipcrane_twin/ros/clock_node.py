@@ -98,14 +98,18 @@ class ClockNode:
         self._state = "running"
         self._announce(0)
         while not self._stop and not lockstep.finished:
-            before = lockstep.slowest
+            before, recorded_before = lockstep.slowest, lockstep.recorded_to
             # the last of the chain has finished a step only when all have
             self._mail.wait(
                 self._pace.wait_s(lockstep.announced, now, SERVICE_PERIOD_S), only=self._inboxes[CHAIN[-1]]
             )
             self._hear()
             now = time.monotonic()
-            if lockstep.slowest > before or lockstep.slowest >= lockstep.announced:
+            if lockstep.waits_for_recorder:
+                idle = lockstep.recorded_to > recorded_before
+            else:
+                idle = lockstep.slowest >= lockstep.announced
+            if lockstep.slowest > before or idle:
                 self._worst_s = max(self._worst_s, now - self._progress_at) if lockstep.slowest > 0 else 0.0
                 self._progress_at = now
                 self._silent = []

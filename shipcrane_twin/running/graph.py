@@ -20,6 +20,9 @@ START_LIMIT_S = 120.0
 """Wall time for all nodes to find each other; kernels may have to be compiled first."""
 
 STOP_LIMIT_S = 2.0
+WRITE_LIMIT_S = 20.0
+"""Wall time for the recorder to write what it holds."""
+
 LOG_LINES = 12
 WATCH_PERIOD_S = 0.05
 
@@ -63,6 +66,7 @@ class Graph:
         self._options = options
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
         self._shared: set[str] = set()
+        self._silent = ""
 
     def run(self, progress: Progress) -> None:
         """Start all nodes, watch them until the clock is done, stop them.
@@ -106,10 +110,12 @@ class Graph:
                 if code is not None:
                     raise NodeFailure(self._obituary(name, f"ended with {describe_exit(code)}"))
             if status["state"] == "silent":
-                name = status["silent"][0]
-                raise NodeFailure(self._obituary(name, f"fell silent at simulated time {status['time_s']:.3f} s"))
-            if pulse and time.monotonic() - pulse_at > self._options.silence_timeout_s:
-                raise NodeFailure(self._obituary("clock", f"fell silent at simulated time {status['time_s']:.3f} s"))
+                self._silent = status["silent"][0]
+            elif pulse and time.monotonic() - pulse_at > self._options.silence_timeout_s:
+                self._silent = "clock"
+            if self._silent:
+                what = f"fell silent at simulated time {status['time_s']:.3f} s"
+                raise NodeFailure(self._obituary(self._silent, what))
             if status["state"] in ("starting", "waiting for nodes") and time.monotonic() > limit:
                 missing = status["silent"] or ["clock"]
                 raise NodeFailure(self._obituary(missing[0], f"did not join within {START_LIMIT_S:g} s"))
@@ -129,7 +135,8 @@ class Graph:
             for process in group:
                 if process.poll() is None:
                     process.send_signal(signal.SIGINT)
-            limit = time.monotonic() + (STOP_LIMIT_S if group != [recorder] else 10 * STOP_LIMIT_S)
+            writes = group == [recorder] and self._silent != "recorder"
+            limit = time.monotonic() + (WRITE_LIMIT_S if writes else STOP_LIMIT_S)
             for process in group:
                 try:
                     process.wait(max(0.01, limit - time.monotonic()))

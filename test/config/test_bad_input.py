@@ -1,7 +1,5 @@
 """Wrong settings: one message with file, key, value, expectation and remedy."""
 
-import re
-
 import pytest
 
 from shipcrane_twin.config.load import load_scenario
@@ -89,6 +87,7 @@ def test_message_names_key_value_and_expectation(override, said):
     message = message_of(override)
     assert message.startswith("--set: ")
     assert said in message
+    assert len(message) < 400
 
 
 @pytest.mark.parametrize("number", ["5e5", "5e-1", "5.0e5", "+5E5", ".5e5"])
@@ -180,7 +179,6 @@ def test_unknown_key_is_told_before_the_missing_one_that_it_caused():
     assert message == "--set: constants.gravity_ms2 is unknown; did you mean gravity_m_s2?"
 
 
-def test_every_message_fits_in_a_few_lines():
-    for override, _ in OVERRIDES.values():
-        assert len(message_of(override)) < 400
-    assert re.match(re.escape(CASE2), message_of("operations.0.from_s=300.0"))
+def test_value_of_the_scenario_itself_names_its_file_though_another_value_was_overridden():
+    message = message_of("operations.0.from_s=300.0")
+    assert message.startswith(f"{CASE2}: operations[0].to_s is 242.0, expected a time after from_s = 300")

@@ -188,7 +188,7 @@ class CliRun:
     def wait_for_time(self, time_s):
         """Wait until the run has reached a simulated time, and take note of its processes."""
         wait_until(lambda: self.status()["time_s"] >= time_s or self.process.poll() is not None)
-        assert self.process.poll() is None, self.finish()
+        assert self.process.poll() is None, f"ended with {self.finish()}: {self.errors}"
         self.nodes = children(self.process.pid)
         self.shared = {name for pid in self.nodes.values() for name in shared_names(pid)}
 

@@ -41,6 +41,7 @@ def assert_whole_up_to(bag, time_s):
             every = STEP_NS if topic.rate == "step" else TELEMETRY_NS
             due = np.arange(0, round(time_s * 1e9) + 1, every)
             np.testing.assert_array_equal(times[topic.name][: len(due)], due, err_msg=topic.name)
+            assert len(set(times[topic.name])) == len(times[topic.name]), f"{topic.name} has doubles"
 
 
 def assert_gone(run):
@@ -84,11 +85,10 @@ def test_a_node_that_falls_silent_is_named(name, endless, tmp_path):
         run.wait_for_time(2.0)
         os.kill(run.nodes[name], signal.SIGSTOP)
         began = time.monotonic()
-        assert run.finish(60.0) == 3
+        assert run.finish() == 3
         assert f"node {name} fell silent" in run.errors
         assert f"node {name} fell silent" in run.summary["failure"]
-        if name != "recorder":  # it may lag, and is given time to write
-            assert 2.0 < time.monotonic() - began < 15.0
+        assert 2.0 < time.monotonic() - began < 15.0
         assert [other for other, pid in run.nodes.items() if is_running(pid)] == []
         assert left_behind(run.shared) == []
 
@@ -111,13 +111,13 @@ def test_an_interrupted_run_keeps_what_it_has(signals, endless, tmp_path):
         assert_gone(run)
 
 
-def test_a_second_run_in_the_same_domain_is_refused_and_harms_nobody(endless, lively, tmp_path):
-    with cli_run(tmp_path / "first", lively, "--speed", "2") as first:
+def test_a_second_run_in_the_same_domain_is_refused_and_harms_nobody(endless, tmp_path):
+    with cli_run(tmp_path / "first", endless, "--speed", "2") as first:
         first.wait_for_time(0.5)
         with cli_run(tmp_path / "second", endless, "--no-record", domain=first.domain) as second:
             assert second.finish() == 3
             assert f"more than one publisher in ROS domain {first.domain}" in second.errors
             assert "set another ROS_DOMAIN_ID" in second.errors
-        assert first.finish(60.0) == 0
-        assert first.summary["complete"] is True
-        assert_whole_up_to(tmp_path / "first" / "bag", 20.0)
+        first.process.send_signal(signal.SIGINT)
+        assert first.finish() == 130
+        assert_whole_up_to(tmp_path / "first" / "bag", first.summary["sim_duration_s"])

@@ -1,5 +1,7 @@
 """The ship as a rigid body: inertia against point masses, conservation laws, the linear model."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from gunnerus_ship import (
@@ -131,7 +133,7 @@ def energy(ship, state, attached):
     return kinetic, kinetic + water + attached[0] * ship.gravity * com_w[2]
 
 
-def test_undamped_ship_with_a_crane_keeps_its_energy():
+def test_undamped_ship_with_a_crane_keeps_its_energy(measured):
     # Alike in all directions of travel, so that Kirchhoff's forces do no work without the Munk moment.
     added = np.zeros((6, 6))
     added[:3, :3] = 4e5 * np.eye(3)
@@ -148,7 +150,8 @@ def test_undamped_ship_with_a_crane_keeps_its_energy():
         state = vessel_step(ship, state, *RESTING_WATER_AND_NO_LOAD, crane, 0.01)
     exchanged = np.ptp(kinetic)
     assert exchanged > 1e5
-    np.testing.assert_allclose(total, total[0], rtol=0.0, atol=1e-6 * exchanged)
+    drift = np.abs(np.array(total) - total[0]).max() / exchanged
+    measured("energy of the undamped ship with a crane over 60 s: drift over energy exchanged", drift, 1e-6)
 
 
 def test_ship_without_water_keeps_its_momentum_and_spin():
@@ -201,7 +204,7 @@ def oscillating_modes():
 
 
 @pytest.mark.parametrize(("mode", "row", "period_s"), [("roll", 3, 5.91), ("heave", 2, 4.77), ("pitch", 4, 4.43)])
-def test_free_decay_has_period_and_damping_of_the_linear_model(mode, row, period_s):
+def test_free_decay_has_period_and_damping_of_the_linear_model(mode, row, period_s, measured):
     value, shape = oscillating_modes()[mode]
     period = 2.0 * np.pi / value.imag
     assert period == pytest.approx(period_s, abs=0.01)
@@ -216,8 +219,9 @@ def test_free_decay_has_period_and_damping_of_the_linear_model(mode, row, period
     times, moves = np.arange(len(moves)) * dt, np.array(moves)
     falls = np.flatnonzero((moves[:-1] > 0.0) & (moves[1:] <= 0.0))
     crossings = times[falls] + dt * moves[falls] / (moves[falls] - moves[falls + 1])
-    assert np.diff(crossings) == pytest.approx(period, rel=0.01)
-    peaks = [moves[a:b].max() for a, b in zip(falls[:-1], falls[1:], strict=True)]
+    off = np.abs(np.diff(crossings) / period - 1.0).max()
+    measured(f"free {mode} decay, period {period:.3f} s, against the linear model's eigenvalue", off, 0.01)
+    peaks = [moves[a:b].max() for a, b in pairwise(falls)]
     assert np.log(peaks[0] / peaks[1]) == pytest.approx(-value.real * period, rel=0.01)
 
 
