@@ -63,9 +63,11 @@ def check_strength(scenario: Scenario, chain: ChainParams, rest: Rest) -> None:
         if abs(effort) > link.drive.effort_max:
             raise ConfigError(
                 f"{scenario.name}: the {link.joint} needs {abs(effort):.3g} to hold crane and load at the start, but "
-                f"its effort_max is {link.drive.effort_max:.3g}; lighten payload.mass_kg = {scenario.payload.mass_kg:g}, "
-                "shorten the radius (crane.initial_joints) or strengthen the drive"
+                f"its effort_max is {link.drive.effort_max:.3g}; lighten the load "
+                f"(payload.mass_kg = {scenario.payload.mass_kg:g}), shorten the radius (crane.initial_joints) or "
+                "strengthen the drive"
             )
+
 
 
 def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> None:

@@ -47,11 +47,12 @@ def test_linear_and_quadratic_damping_only_take_power(turn, heave):
     assert nu @ damping_load(HULL, nu) <= 0.0
 
 
-def test_damping_grows_linearly_with_the_squared_part_on_top_in_roll_and_yaw():
-    rates = np.array([0.0, 0.0, 0.0, 0.2, 0.0, -0.1])
-    squared = [HULL.quadratic[0] * 0.2**2, -HULL.quadratic[1] * 0.1**2]
+@pytest.mark.parametrize("roll_rate", [0.2, -0.2])
+@pytest.mark.parametrize("yaw_rate", [0.1, -0.1])
+def test_damping_is_linear_with_a_squared_part_on_top_in_roll_and_yaw(roll_rate, yaw_rate):
+    rates = np.array([0.0, 0.0, 0.0, roll_rate, 0.0, yaw_rate])
     expected = -HULL.damping @ rates
-    expected[[3, 5]] -= squared
+    expected[[3, 5]] -= HULL.quadratic * [np.sign(roll_rate) * 0.2**2, np.sign(yaw_rate) * 0.1**2]
     np.testing.assert_allclose(damping_load(HULL, rates), expected)
 
 
