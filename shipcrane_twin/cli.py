@@ -113,7 +113,7 @@ def parse_speed(text: str) -> float:
         value = 0.0 if text == "max" else float(text)
     except ValueError:
         value = -1.0
-    if value < 0.0 or value == float("inf") or (value == 0.0 and text != "max"):
+    if not 0.0 <= value < float("inf") or (value == 0.0 and text != "max"):
         raise ConfigError(f"--speed is {text!r}, expected max or a number above 0, for instance 1.0 for real time")
     return value
 

@@ -1,5 +1,6 @@
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -7,6 +8,8 @@ from pathlib import Path
 import pytest
 import yaml
 from rosbags.highlevel import AnyReader
+
+from shipcrane_twin import cli
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -39,6 +42,14 @@ def shipcrane(*words, cwd, program=("-m", "shipcrane_twin.cli")):
         text=True,
         timeout=120,
     )
+
+
+@pytest.fixture(autouse=True)
+def same_handler_for_sigterm():
+    """Undo what the command line sets up for its process."""
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
 
 
 @pytest.fixture(scope="module")
@@ -160,7 +171,7 @@ BAD = {
     "step": ((*RUN, "--set", "macro_step_ms=30"), ["macro_step_ms is 30, expected a step that divides", "20, 25"]),
     "coupling": ((*RUN, "--set", "coupling=in_turns"), ["coupling is 'in_turns'", "did you mean in_turn?"]),
     "until": (("run", "case2", "--until", "-5"), ["duration_s is -5.0, expected"]),
-    "until nan": (("run", "case2", "--until", "nan"), ["duration_s is nan, expected"]),
+    "until nan": (("run", "case2", "--until", "nan"), ["duration_s is 'nan', expected"]),
     "seed": ((*RUN, "--seed", "-1"), ["seed is -1, expected"]),
     "speed word": ((*RUN, "--speed", "fast"), ["--speed is 'fast', expected max or a number above 0"]),
     "speed zero": ((*RUN, "--speed", "0"), ["--speed is '0', expected max or a number above 0"]),
@@ -178,16 +189,26 @@ BAD = {
 
 
 @pytest.mark.parametrize("what", BAD)
-def test_bad_input_gives_one_message_and_starts_nothing(what, tmp_path):
+def test_bad_input_gives_one_message_and_starts_nothing(what, tmp_path, monkeypatch, capfd):
     words, expected = BAD[what]
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.txt").write_text("mine")
     (tmp_path / "file").write_text("mine")
     before = sorted(tmp_path.rglob("*"))
-    done = shipcrane(*words, cwd=tmp_path)
-    assert done.returncode == 2, done.stdout + done.stderr
-    assert done.stdout == ""
-    assert "Traceback" not in done.stderr
-    assert [part for part in expected if part not in done.stderr] == [], done.stderr
-    assert done.stderr.count("rror") == 1
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", ["shipcrane", *words])
+    with pytest.raises(SystemExit) as end:
+        cli.main()
+    out, err = capfd.readouterr()
+    assert (end.value.code, out) == (2, "")
+    assert [part for part in expected if part not in err] == [], err
+    assert err.lower().count("error: ") == 1
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_bad_input_ends_the_process_with_code_2_and_no_traceback(tmp_path):
+    done = shipcrane("run", "case2", "--set", "dp.period=1", cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("error: --set: dp.period is unknown; unit clash: this setting is period_ms")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []

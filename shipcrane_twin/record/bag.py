@@ -8,7 +8,10 @@ import yaml
 from mcap.writer import CompressionType, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from shipcrane_twin.cosim.topics import Topic
+from shipcrane_twin import __version__
+from shipcrane_twin.config.load import scenario_yaml
+from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim.topics import TOPICS, Topic
 
 LIBRARY = "shipcrane_twin"
 COMPRESSION = {"zstd": CompressionType.ZSTD, "none": CompressionType.NONE}
@@ -23,6 +26,20 @@ QOS = """- history: keep_last
   avoid_ros_namespace_conventions: false
 """
 """Of every topic, in the file and in metadata.yaml: readers match the two."""
+
+
+RECORDED = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
+"""What a bag of the twin holds; the recorder's own progress is not part of a run."""
+
+
+def bag_options(scenario: Scenario) -> dict[str, Any]:
+    """Return the arguments of `BagWriter`, beside the folder, for the bag of a run of this scenario."""
+    return {
+        "topics": RECORDED,
+        "compression": scenario.recording.compression,
+        "chunk_kib": scenario.recording.chunk_kib,
+        "metadata": {"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},
+    }
 
 
 class BagWriter:

@@ -54,7 +54,7 @@ def salvage(file: Path) -> Iterator[tuple[str, int, bytes]]:
     """Yield topic, log time [ns] and bytes of every message before the place where a file breaks off."""
     topics: dict[int, str] = {}
     with file.open("rb") as stream:
-        records = StreamReader(stream).records
+        records = StreamReader(stream, validate_crcs=True).records
         while True:
             try:
                 record = next(records)

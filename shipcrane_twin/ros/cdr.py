@@ -165,7 +165,8 @@ def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
         at = skip_string(message, ORIGIN + 8)
         names, at = _read_names(message, at)
         _, at = _read_doubles(message, at)
-        velocities, _ = _read_doubles(message, at)
+        velocities, at = _read_doubles(message, at)
+        _read_doubles(message, at)  # a message that lacks its end is none
     except (struct.error, ValueError) as err:
         raise CdrError(f"not a JointState: {err}") from None
     return names, velocities

@@ -7,13 +7,12 @@ import numpy as np
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from shipcrane_twin import __version__
-from shipcrane_twin.config.load import load_scenario, scenario_yaml
+from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.config.settings import ConfigError
-from shipcrane_twin.cosim.topics import BY_NAME, TOPICS
-from shipcrane_twin.record.bag import BagWriter
+from shipcrane_twin.cosim.topics import BY_NAME
+from shipcrane_twin.record.bag import RECORDED, BagWriter, bag_options
 from shipcrane_twin.record.collector import StepCollector
-from shipcrane_twin.ros.cdr import CdrError, Template, read_stamp
+from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
 from shipcrane_twin.ros.parameters import declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, write_result
@@ -42,25 +41,14 @@ class RecorderNode:
         scenario = load_scenario(run.scenario)
         self._run_dir = run.run_dir
         self._step_ns, self._last = scenario.step_ns, scenario.step_count
-        topics = tuple(topic for topic in TOPICS if topic.name != PROGRESS)
         stop.arm()
         try:
-            self._bag = BagWriter(
-                Path(run.run_dir or ".") / "bag",
-                topics,
-                compression=scenario.recording.compression,
-                chunk_kib=scenario.recording.chunk_kib,
-                metadata={
-                    "scenario": scenario_yaml(scenario),
-                    "version": __version__,
-                    "seed": str(scenario.seed),
-                },
-            )
+            self._bag = BagWriter(Path(run.run_dir or ".") / "bag", **bag_options(scenario))
         except OSError as err:
             raise ConfigError(f"recorder: the bag cannot be written: {err}; give another folder") from None
-        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+        self._collector = StepCollector(RECORDED, scenario.step_ns, scenario.telemetry_every, self._bag.write)
         group = LoopOwned()
-        self._mail = Mailroom(self.node, [Inbox(self.node, topic, group) for topic in topics])
+        self._mail = Mailroom(self.node, [Inbox(self.node, topic, group) for topic in RECORDED])
         self._template = Template(BY_NAME[PROGRESS])
         self._publisher = self.node.create_publisher(message_class(BY_NAME[PROGRESS].type), PROGRESS, LOOP_QOS)
         self._executor = SingleThreadedExecutor()
@@ -110,11 +98,12 @@ class RecorderNode:
         for inbox in self._mail.inboxes:
             topic = inbox.topic
             while (message := inbox.take()) is not None:
-                if topic.publisher == "operator":
-                    self._collector.add(topic.name, max(self._collector.complete, 0) * self._step_ns, message)
-                    continue
                 try:
-                    stamp = read_stamp(message)
+                    if topic.publisher == "operator":
+                        read_joint_velocities(message)  # what is no JointState would spoil the bag
+                        stamp = max(self._collector.complete, 0) * self._step_ns
+                    else:
+                        stamp = read_stamp(message)
                 except CdrError as err:
                     self.node.get_logger().warn(f"{topic.name} not recorded: {err}", throttle_duration_sec=1.0)
                     continue

@@ -102,13 +102,9 @@ class Graph:
             if status["state"] == "running" and not self._shared:
                 # a node that is killed cannot be asked later
                 self._shared = {name for process in self._processes.values() for name in mapped_names(process.pid)}
-            for name, process in self._processes.items():
-                code = process.poll()
-                if name == "clock" and code == 0:
-                    progress(read_status(self._options.folder))
-                    return
-                if code is not None:
-                    raise NodeFailure(self._obituary(name, f"ended with {describe_exit(code)}"))
+            if self._is_done():
+                progress(read_status(self._options.folder))
+                return
             if status["state"] == "silent":
                 self._silent = status["silent"][0]
             elif pulse and time.monotonic() - pulse_at > self._options.silence_timeout_s:
@@ -120,6 +116,16 @@ class Graph:
                 missing = status["silent"] or ["clock"]
                 raise NodeFailure(self._obituary(missing[0], f"did not join within {START_LIMIT_S:g} s"))
             time.sleep(WATCH_PERIOD_S)
+
+    def _is_done(self) -> bool:
+        """Whether the clock has ended well; NodeFailure if any other node has ended, or the clock badly."""
+        for name, process in self._processes.items():
+            code = process.poll()
+            if name == "clock" and code == 0:
+                return True
+            if code is not None:
+                raise NodeFailure(self._obituary(name, f"ended with {describe_exit(code)}"))
+        return False
 
     def _obituary(self, name: str, what: str) -> str:
         log = self._options.folder / "log" / f"{name}.log"

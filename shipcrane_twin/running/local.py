@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from shipcrane_twin import __version__
-from shipcrane_twin.config.load import scenario_yaml
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim.inline import InlineRun
-from shipcrane_twin.cosim.topics import DIAGNOSTICS, TOPICS
+from shipcrane_twin.cosim.topics import DIAGNOSTICS
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.record.bag import BagWriter
+from shipcrane_twin.record.bag import RECORDED, BagWriter, bag_options
 from shipcrane_twin.record.collector import StepCollector
 from shipcrane_twin.ros.cdr import Template
 
@@ -32,16 +30,9 @@ class InlineRecorder:
     """
 
     def __init__(self, scenario: Scenario, folder: Path) -> None:
-        topics = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
-        self._templates = {topic.name: Template(topic) for topic in topics if topic.type != DIAGNOSTICS}
-        self._bag = BagWriter(
-            folder / "bag",
-            topics,
-            compression=scenario.recording.compression,
-            chunk_kib=scenario.recording.chunk_kib,
-            metadata={"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},
-        )
-        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+        self._templates = {topic.name: Template(topic) for topic in RECORDED if topic.type != DIAGNOSTICS}
+        self._bag = BagWriter(folder / "bag", **bag_options(scenario))
+        self._collector = StepCollector(RECORDED, scenario.step_ns, scenario.telemetry_every, self._bag.write)
         self.spent_s = 0.0
 
     def take(self, time_ns: int, topic: str, values: Array) -> None:

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, Literal
 
 from shipcrane_twin import __version__
-from shipcrane_twin.config.load import scenario_yaml
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import plain
 from shipcrane_twin.cosim.participant import state_digest
 from shipcrane_twin.cosim.topics import TOPICS
+from shipcrane_twin.record.bag import bag_options
 from shipcrane_twin.record.read import Signals, read_signals
 from shipcrane_twin.record.rescue import is_broken, rescue_bag
 from shipcrane_twin.report.page import write_report
@@ -19,8 +19,6 @@ from shipcrane_twin.report.summary import find_gaps, summarise
 from shipcrane_twin.running.folder import node_results
 from shipcrane_twin.running.graph import Graph, GraphOptions, NodeFailure
 from shipcrane_twin.running.local import run_inline
-
-RECORDED = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
 
 Mode = Literal["graph", "inline"]
 Progress = Callable[[dict[str, Any]], None]
@@ -149,13 +147,7 @@ def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:
     if not bag.exists():
         return None
     if is_broken(bag):
-        rescue_bag(
-            bag,
-            RECORDED,
-            compression=scenario.recording.compression,
-            chunk_kib=scenario.recording.chunk_kib,
-            metadata={"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},
-        )
+        rescue_bag(bag, **bag_options(scenario))
     return read_signals(bag)
 
 

@@ -61,7 +61,8 @@ class Operator:
         client = AsyncParameterClient(self.node, node)
         self.wait(client.services_are_ready)
         names = self.answer(client.list_parameters()).result.names
-        return {d.name: [d.description, d.read_only] for d in self.answer(client.describe_parameters(names)).descriptors}
+        descriptors = self.answer(client.describe_parameters(names)).descriptors
+        return {found.name: [found.description, found.read_only] for found in descriptors}
 
     def say(self, names, velocities, stamp=(0, 0)):
         self.wait(lambda: self.command.get_subscription_count() >= 2)
@@ -81,7 +82,8 @@ class Operator:
             stamp = message.clock if hasattr(message, "clock") else message.header.stamp
             log.append(stamp.sec * 10**9 + stamp.nanosec)
 
-        self.node.create_subscription(getattr(import_module(f"{package}.msg"), name), topic, hear, QoSProfile(depth=depth))
+        message_class = getattr(import_module(f"{package}.msg"), name)
+        self.node.create_subscription(message_class, topic, hear, QoSProfile(depth=depth))
 
     def stamps(self, topic):
         return self.heard[topic]

@@ -6,7 +6,16 @@ import time
 from pathlib import Path
 
 import pytest
-from graph_runs import NODES, free_domain, is_running, left_behind, needs_ros, shared_names, start_node_alone, wait_until
+from graph_runs import (
+    NODES,
+    free_domain,
+    is_running,
+    left_behind,
+    needs_ros,
+    shared_names,
+    start_node_alone,
+    wait_until,
+)
 
 pytestmark = needs_ros
 

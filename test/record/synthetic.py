@@ -184,7 +184,7 @@ class Lift:
         ramp = np.clip((slow * 1e-9 / self.duration_s - 0.4) / 0.3, 0, 1)
         arm = np.column_stack([-1.2 + 2.4 * ramp, 0.6 + 0.3 * ramp, 1.0 - 0.2 * ramp, 2.0 + 0 * ramp])
         signals = {
-            "/environment/wind": np.tile([self.wind_speed, 0, 0, 0, 0, 0], (len(hot), 1)),
+            "/environment/wind": np.tile([self.wind_speed, 0, 0, 0, 0, 0], (len(slow), 1)),
             "/vessel/odom": np.hstack([origin_w, turn.as_quat(), np.zeros((len(hot), 6))]),
             "/crane/tip": np.hstack([tip_w, still]),
             "/crane/base_wrench": base,
