@@ -137,7 +137,7 @@ def execute(scenario: Scenario, mode: Literal["graph", "inline"], out: Path | No
         def show(status: dict[str, Any]) -> None:
             text = status["state"]
             if text == "waiting for nodes" and status["silent"]:
-                text = f"waiting for {', '.join(status['silent'])}"
+                text = f"waiting for {', '.join(status['silent'])} (a first start compiles the models)"
             bar.update(task, completed=status["time_s"], factor=status["real_time_factor"], description=text)
 
         outcome = run_scenario(scenario, folder, mode, record, show)

@@ -138,35 +138,6 @@ def fill_base_wrench(work: ChainWork, qdd: Array, wrench_b: Array) -> None:
 
 
 @njit(cache=True)
-def solve_in_place(matrix: Array, x: Array) -> bool:
-    """Replace x (n,) by matrix^-1 x for a symmetric positive definite matrix, which becomes L D L^T.
-
-    Return False, with x spoilt, if a pivot is not positive, as with a value that is not a number.
-    """
-    n = x.shape[0]
-    for j in range(n):
-        pivot = matrix[j, j]
-        for k in range(j):
-            pivot -= matrix[j, k] * matrix[j, k] * matrix[k, k]
-        if not pivot > 0.0:
-            return False
-        matrix[j, j] = pivot
-        for i in range(j + 1, n):
-            element = matrix[i, j]
-            for k in range(j):
-                element -= matrix[i, k] * matrix[j, k] * matrix[k, k]
-            matrix[i, j] = element / pivot
-    for i in range(n):
-        for k in range(i):
-            x[i] -= matrix[i, k] * x[k]
-    for i in range(n - 1, -1, -1):
-        x[i] /= matrix[i, i]
-        for k in range(i + 1, n):
-            x[i] -= matrix[k, i] * x[k]
-    return True
-
-
-@njit(cache=True)
 def pack_base(w0: Array, al0: Array, f0: Array, tip_force_b: Array) -> Array:
     """Return `base` (16,) from its four vectors (3,), all in crane_base axes, with no mass carried."""
     base = np.zeros(16)

@@ -21,12 +21,12 @@ from shipcrane_twin.physics.crane_dynamics import (
     fill_bias,
     fill_mass_matrix,
     mass_matrix,
-    solve_in_place,
 )
 from shipcrane_twin.physics.crane_inertia import fill_composite
 from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links
 from shipcrane_twin.physics.crane_load import add_tip_acceleration, hang_load
 from shipcrane_twin.physics.crane_reference import FLAG_EFFORT, MotionLimits, advance_reference
+from shipcrane_twin.physics.linalg import solve_in_place
 
 
 class ServoParams(NamedTuple):

@@ -1,54 +1,51 @@
 """Small dense algebra for the kernels."""
 
-import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 
 
 @njit(cache=True)
+def solve_in_place(matrix: Array, x: Array) -> bool:
+    """Replace x (n,) by matrix^-1 x for a symmetric positive definite matrix, which becomes L D L^T.
+
+    Return False, with x spoilt, if a pivot is not positive, as with a value that is not a number.
+    """
+    n = x.shape[0]
+    for j in range(n):
+        pivot = matrix[j, j]
+        for k in range(j):
+            pivot -= matrix[j, k] * matrix[j, k] * matrix[k, k]
+        if not pivot > 0.0:
+            return False
+        matrix[j, j] = pivot
+        for i in range(j + 1, n):
+            element = matrix[i, j]
+            for k in range(j):
+                element -= matrix[i, k] * matrix[j, k] * matrix[k, k]
+            matrix[i, j] = element / pivot
+    for i in range(n):
+        for k in range(i):
+            x[i] -= matrix[i, k] * x[k]
+    for i in range(n - 1, -1, -1):
+        x[i] /= matrix[i, i]
+        for k in range(i + 1, n):
+            x[i] -= matrix[k, i] * x[k]
+    return True
+
+
+@njit(cache=True)
 def solve_spd(matrix: Array, rhs: Array) -> Array:
-    """Solve ``matrix @ x = rhs`` for a symmetric positive definite matrix by Cholesky's method.
+    """Return x (n,) with ``matrix @ x = rhs`` for a symmetric positive definite matrix (n, n).
 
     Own code because numba's LAPACK calls cost more than the whole solve at these sizes.
-
-    Parameters
-    ----------
-    matrix : float64, shape (n, n)
-        Only the lower triangle is read.
-    rhs : float64, shape (n,)
-
-    Returns
-    -------
-    float64, shape (n,)
 
     Raises
     ------
     ValueError
         If the matrix is not positive definite.
     """
-    n = rhs.shape[0]
-    low = np.empty((n, n))
-    x = np.empty(n)
-    for i in range(n):
-        for j in range(i + 1):
-            total = matrix[i, j]
-            for k in range(j):
-                total -= low[i, k] * low[j, k]
-            if i == j:
-                if total <= 0.0:
-                    raise ValueError("solve_spd: the matrix is not positive definite")
-                low[i, i] = np.sqrt(total)
-            else:
-                low[i, j] = total / low[j, j]
-    for i in range(n):
-        total = rhs[i]
-        for k in range(i):
-            total -= low[i, k] * x[k]
-        x[i] = total / low[i, i]
-    for i in range(n - 1, -1, -1):
-        total = x[i]
-        for k in range(i + 1, n):
-            total -= low[k, i] * x[k]
-        x[i] = total / low[i, i]
+    x = rhs.copy()
+    if not solve_in_place(matrix.copy(), x):
+        raise ValueError("solve_spd: the matrix is not positive definite")
     return x

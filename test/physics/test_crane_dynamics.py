@@ -5,8 +5,9 @@ import pytest
 from palfinger import GRAVITY, UP, WORK_POSE, mixed_chain, palfinger_chain, random_vectors
 
 from shipcrane_twin.physics.crane_chain import forward_kinematics
-from shipcrane_twin.physics.crane_dynamics import base_wrench, bias_forces, mass_matrix, solve_in_place
+from shipcrane_twin.physics.crane_dynamics import base_wrench, bias_forces, mass_matrix
 from shipcrane_twin.physics.crane_inertia import coriolis_matrix
+from shipcrane_twin.physics.linalg import solve_in_place
 
 ZERO = np.zeros(3)
 BUILDS = pytest.mark.parametrize("build", [palfinger_chain, mixed_chain])
