@@ -152,7 +152,7 @@ def is_running(pid):
         return False
 
 
-def wait_until(condition, patience_s=30.0):
+def wait_until(condition, patience_s=60.0):
     """Wait for a condition and return what it gave; fail the test after a while."""
     end = time.monotonic() + patience_s
     while not (found := condition()):
@@ -187,12 +187,13 @@ class CliRun:
 
     def wait_for_time(self, time_s):
         """Wait until the run has reached a simulated time, and take note of its processes."""
-        wait_until(lambda: self.status()["time_s"] >= time_s or self.process.poll() is not None)
+        patience_s = 150.0  # kernels may have to be compiled first; the run itself gives up before that
+        wait_until(lambda: self.status()["time_s"] >= time_s or self.process.poll() is not None, patience_s)
         assert self.process.poll() is None, f"ended with {self.finish()}: {self.errors}"
         self.nodes = children(self.process.pid)
         self.shared = {name for pid in self.nodes.values() for name in shared_names(pid)}
 
-    def finish(self, patience_s=40.0):
+    def finish(self, patience_s=90.0):
         """Wait for the end and return the exit code."""
         self.out, self.errors = self.process.communicate(timeout=patience_s)
         return self.process.returncode

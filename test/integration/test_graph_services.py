@@ -201,7 +201,9 @@ def test_an_operators_command_moves_boom_and_winch_and_is_in_the_bag(tmp_path):
     assert set(boom) == {0.0, 0.02}
     assert said[0] < moving_s[0] < said[0] + 3.0
     paid = signals.joints["/winch/joint_command_applied"].velocity[:, 0]
-    np.testing.assert_array_equal(paid, 5.0 * boom)  # both obeyed in the same steps
+    # crane and payload take a free operator's word each at its own next step, so nearly at the same time
+    assert set(paid) == {0.0, 0.1}
+    assert np.count_nonzero(paid != 5.0 * boom) <= 2 * len(said)
 
     joints, winch = signals.joints["/crane/joint_states"], signals.joints["/winch/joint_states"]
     span_s = moving_s[-1] - moving_s[0]
