@@ -16,7 +16,7 @@ from typing import Any
 from shipcrane_twin.cosim.coupling import CHAIN
 from shipcrane_twin.ros.shared_memory import mapped_names, remove_orphans
 
-START_LIMIT_S = 120.0
+START_LIMIT_S = 300.0
 """Wall time for all nodes to find each other; kernels may have to be compiled first."""
 
 STOP_LIMIT_S = 2.0
