@@ -1,5 +1,6 @@
 """How fast the twin runs here: ratio to real time, and where the time goes."""
 
+import itertools
 import os
 import platform
 import statistics
@@ -25,7 +26,7 @@ Row = dict[str, float]
 
 
 def run_bench(name: str, until_s: float, console: Console) -> None:
-    """Measure inline and graph runs with recording and print one table.
+    """Measure inline and graph runs, with and without recording, and print one table.
 
     Parameters
     ----------
@@ -35,15 +36,16 @@ def run_bench(name: str, until_s: float, console: Console) -> None:
         Simulated time of each run [s].
     console : Console
     """
-    table = Table(title=f"{name}, {until_s:g} s, recorded; median of {REPEATS} runs (spread)", title_justify="left")
-    for heading in ("mode", "step", "real-time factor", "ms/step", "physics", "messaging", "recording"):
-        table.add_column(heading, justify="left" if heading == "mode" else "right", no_wrap=True)
-    for mode, measure in (("inline", measure_inline), ("graph", measure_graph)):
-        for step_ms in STEPS_MS:
-            scenario = load_scenario(name, [f"macro_step_ms={step_ms}", f"duration_s={float(until_s)}"])
-            with console.status(f"{mode}, {step_ms} ms"):
-                rows = [repeat(measure, scenario) for _ in range(REPEATS)]
-            table.add_row(mode, f"{step_ms} ms", *cells(rows))
+    table = Table(title=f"{name}, {until_s:g} s; median of {REPEATS} runs (spread)", title_justify="left")
+    for heading in ("mode", "bag", "step", "real-time factor", "ms/step", "physics", "messaging", "recording"):
+        table.add_column(heading, justify="left" if heading in ("mode", "bag") else "right", no_wrap=True)
+    modes = (("inline", measure_inline), ("graph", measure_graph))
+    for (mode, measure), record, step_ms in itertools.product(modes, (True, False), STEPS_MS):
+        scenario = load_scenario(name, [f"macro_step_ms={step_ms}", f"duration_s={float(until_s)}"])
+        bag = "yes" if record else "no"
+        with console.status(f"{mode}, {step_ms} ms, bag {bag}"):
+            rows = [repeat(measure, scenario, record) for _ in range(REPEATS)]
+        table.add_row(mode, bag, f"{step_ms} ms", *cells(rows))
     console.print(table)
     console.print(
         "physics, messaging (decode, encode, publish) and recording: microseconds per step, summed over the "
@@ -53,30 +55,30 @@ def run_bench(name: str, until_s: float, console: Console) -> None:
     )
 
 
-def repeat(measure: Callable[[Scenario, Path], Row], scenario: Scenario) -> Row:
+def repeat(measure: Callable[[Scenario, Path, bool], Row], scenario: Scenario, record: bool) -> Row:
     """Measure one run in a folder that is thrown away."""
     with tempfile.TemporaryDirectory(prefix="twin-bench-") as folder:
-        return measure(scenario, Path(folder))
+        return measure(scenario, Path(folder), record)
 
 
-def measure_inline(scenario: Scenario, folder: Path) -> Row:
+def measure_inline(scenario: Scenario, folder: Path, record: bool) -> Row:
     """Return one inline run's figures."""
-    result = run_inline(scenario, folder, True, ignore)
+    result = run_inline(scenario, folder, record, ignore)
     steps = result["steps"]
-    record = result["record_s"] / steps * 1e6
+    recording = result["record_s"] / steps * 1e6
     return {
         "factor": scenario.duration_s / result["wall_time_s"],
         "ms": result["wall_time_s"] / steps * 1e3,
-        "physics": result["wall_time_s"] / steps * 1e6 - record,
+        "physics": result["wall_time_s"] / steps * 1e6 - recording,
         "messaging": 0.0,
-        "recording": record,
+        "recording": recording,
     }
 
 
-def measure_graph(scenario: Scenario, folder: Path) -> Row:
+def measure_graph(scenario: Scenario, folder: Path, record: bool) -> Row:
     """Return one graph run's figures."""
     (folder / "scenario.yaml").write_text(scenario_yaml(scenario), encoding="utf-8")
-    Graph(GraphOptions(folder, record=True)).run(ignore)
+    Graph(GraphOptions(folder, record=record)).run(ignore)
     nodes = node_results(folder)
     budgets = [node["us_per_step"] for node in nodes.values() if "us_per_step" in node]
     clock = nodes["clock"]
