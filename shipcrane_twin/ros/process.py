@@ -19,6 +19,9 @@ from shipcrane_twin.ros.stop import StopFlag
 EXIT_BAD_INPUT = 2
 EXIT_FAILED = 3
 
+_LEFT: list[Node] = []
+"""Nodes that have left: the participant would be deleted with its last node, which `run_node` must not let happen."""
+
 
 def run_node(body: Callable[[StopFlag], None], stop: StopFlag) -> NoReturn:
     """Run a node's body on a started rclpy and end the process; bad input gives one message and exit code 2.
@@ -54,7 +57,8 @@ def run_node(body: Callable[[StopFlag], None], stop: StopFlag) -> NoReturn:
 
 
 def leave_graph(node: Node) -> None:
-    """Remove a node's endpoints, so that its peers stop sending to it."""
+    """Remove a node's endpoints, so that its peers stop sending to it; the node itself stays to the process's end."""
+    _LEFT.append(node)
     for publisher in list(node.publishers):
         node.destroy_publisher(publisher)
     for subscription in list(node.subscriptions):
