@@ -33,6 +33,10 @@ from shipcrane_twin.ros.subsystem_node import DONE_TOPIC, SERVICE_PERIOD_S, step
 
 STATUS_PERIOD_S = 0.25
 DIAGNOSTICS_PERIOD_S = 1.0
+
+CATCH_UP_S = 1.5
+"""Wall time that a clock which was told to stop gives the recorder."""
+
 _NO_VALUES = np.empty(0)
 
 
@@ -116,6 +120,8 @@ class ClockNode:
             self._announce(self._pace.due(lockstep.announced, lockstep.may_announce(), now))
             if now > self._service_at:
                 self._attend(now)
+        if self._stop:
+            self._let_recorder_catch_up()
         now = time.monotonic()
         self._state = "done" if lockstep.finished else "stopped"
         self._tell(now)
@@ -133,6 +139,16 @@ class ClockNode:
     def close(self) -> None:
         """Leave the graph."""
         leave_graph(self.node)
+
+    def _let_recorder_catch_up(self) -> None:
+        """Wait until all that was done is recorded: what a node published cannot be sent again without it."""
+        limit = time.monotonic() + CATCH_UP_S
+        while self._lockstep.recorded and self._lockstep.recorded_to < self._lockstep.slowest:
+            left_s = limit - time.monotonic()
+            if left_s <= 0.0:
+                return
+            self._mail.wait(left_s, only=self._recorder)
+            self._hear()
 
     def _connect(self) -> None:
         while not self._stop:

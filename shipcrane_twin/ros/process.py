@@ -12,6 +12,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from shipcrane_twin.config.places import config_dir
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.ros.shared_memory import remove_own
 from shipcrane_twin.ros.stop import StopFlag
@@ -40,6 +41,7 @@ def run_node(body: Callable[[StopFlag], None], stop: StopFlag) -> NoReturn:
     removed one by one, and the files in shared memory are removed here.
     """
     os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(config_dir() / "fastdds.xml"))
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     code = 0
     try:

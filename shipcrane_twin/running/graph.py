@@ -134,14 +134,14 @@ class Graph:
         return f"node {name} {what}; its last log lines ({log}):\n{last}"
 
     def _stop(self) -> None:
-        """Interrupt all but the recorder, then the recorder; kill what does not end."""
+        """Interrupt the clock, which lets the recorder catch up, then the recorder and the rest; kill what stays."""
         shared = {name for process in self._processes.values() for name in mapped_names(process.pid)}
-        recorder = self._processes.pop("recorder", None)
-        for group in (list(self._processes.values()), [recorder] if recorder else []):
+        for names in (["clock"], ["recorder"], self._options.order):
+            group = [self._processes[name] for name in names if name in self._processes]
             for process in group:
                 if process.poll() is None:
                     process.send_signal(signal.SIGINT)
-            writes = group == [recorder] and self._silent != "recorder"
+            writes = names == ["recorder"] and self._silent != "recorder"
             limit = time.monotonic() + (WRITE_LIMIT_S if writes else STOP_LIMIT_S)
             for process in group:
                 try:

@@ -121,3 +121,16 @@ def test_a_second_run_in_the_same_domain_is_refused_and_harms_nobody(endless, tm
         first.process.send_signal(signal.SIGINT)
         assert first.finish() == 130
         assert_whole_up_to(tmp_path / "first" / "bag", first.summary["sim_duration_s"])
+
+
+def test_what_a_slow_recorder_missed_is_sent_again_before_an_interrupted_run_ends(endless, tmp_path):
+    with cli_run(tmp_path / "run", endless, *PACED) as run:
+        run.wait_for_time(1.0)
+        os.kill(run.nodes["recorder"], signal.SIGSTOP)
+        time.sleep(1.0)  # more than its queue in shared memory holds
+        os.kill(run.nodes["recorder"], signal.SIGCONT)
+        run.process.send_signal(signal.SIGTERM)
+        assert run.finish() == 130
+        assert run.summary["gaps"] == []
+        assert_whole_up_to(tmp_path / "run" / "bag", run.summary["sim_duration_s"])
+        assert_gone(run)
