@@ -175,6 +175,7 @@ def print_summary(summary: dict[str, Any], folder: Path, page: Path | None) -> N
 def main() -> None:
     """Run the command line; a wrong input gives one message, never a traceback."""
     signal.signal(signal.SIGTERM, interrupt)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell's background jobs do not inherit
     from shipcrane_twin.record.scan import BagError
     from shipcrane_twin.report.page import ReportError
 

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 
@@ -87,7 +88,11 @@ def test_a_node_that_ignores_the_signal_is_killed(nodes, tmp_path, monkeypatch):
     run(tmp_path)  # which checks that all have ended
 
 
-def test_signals_are_ignored_only_inside():
+def test_signals_are_ignored_only_inside(request):
+    # a suite that a shell runs in the background has inherited a SIGINT that does nothing
+    request.addfinalizer(partial(signal.signal, signal.SIGINT, signal.getsignal(signal.SIGINT)))
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
     def interrupt():
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(0.01)
