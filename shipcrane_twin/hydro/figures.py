@@ -1,0 +1,295 @@
+"""Pictures of a database: hull, added mass, damping, memory, wave loads, motions, drift; one ship or two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.linalg import expm
+
+from shipcrane_twin.hydro.compare import MODES
+from shipcrane_twin.hydro.database import LATERAL, LONGITUDINAL, Complex, HydroDatabase, RadiationFit
+from shipcrane_twin.hydro.memory import retardation
+from shipcrane_twin.hydro.rao import natural_periods, raos
+from shipcrane_twin.physics.arrays import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito 2008, as in report.style, which stands above this package.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
+INK, GRID = "#222222", "#D8D8D8"
+FONT, SMALL, DPI = 10, 9, 130
+TOWARD = "wave goes to (0° following sea, 90° to port, 180° head sea)"
+DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0, 180.0)
+PERIOD_MARKS = (2, 3, 4, 5, 6, 8, 10, 15, 30)
+
+
+class Ships(NamedTuple):
+    """What a figure draws: one ship, and another one beside it or not."""
+
+    data: HydroDatabase
+    other: HydroDatabase | None
+    mass6: Array | None
+    extra_damping: Array | None
+
+    def each(self) -> Iterator[tuple[HydroDatabase, str]]:
+        """Yield database and line style: solid, then dashed."""
+        yield self.data, "-"
+        if self.other is not None:
+            yield self.other, "--"
+
+
+def draw(
+    data: HydroDatabase,
+    folder: Path,
+    *,
+    other: HydroDatabase | None = None,
+    mass6: Array | None = None,
+    extra_damping: Array | None = None,
+    mesh: tuple[Array, Array] | None = None,
+) -> list[Path]:
+    """Draw a database into PNG files.
+
+    Parameters
+    ----------
+    data : HydroDatabase
+        Solid lines.
+    folder : Path
+        Made if absent.
+    other : HydroDatabase, optional
+        Dashed lines.
+    mass6 : float64, shape (6, 6), optional
+        Rigid-body mass about the CoG; motions and natural periods are drawn with it.
+    extra_damping : float64, shape (6, 6), optional
+        Linear damping beside radiation, for the motions.
+    mesh : tuple of float64, shape (k, 3), and int, shape (j, 4), optional
+        Points and panels of the hull, one side or both.
+
+    Returns
+    -------
+    list of Path
+        In the order in which one reads them.
+    """
+    ships = Ships(data, other, mass6, extra_damping)
+    makers: dict[str, Callable[[Ships], Figure]] = {
+        "added_mass": added_mass,
+        "damping": damping,
+        "coupling": coupling,
+        "memory": memory,
+        "excitation": excitation,
+        "drift": drift,
+    }
+    if mass6 is not None:
+        makers["motions"] = motions
+    figures = {} if mesh is None else {"hull": hull(*mesh)}
+    figures |= {name: make(ships) for name, make in makers.items()}
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, figure in figures.items():
+        path = folder / f"{name}.png"
+        figure.savefig(path, dpi=DPI, metadata={"Software": None})
+        paths.append(path)
+    return paths
+
+
+def grid(title: str, ships: Ships | None, rows: int = 2) -> tuple[Figure, list[Axes]]:
+    """Return a figure with rows of three axes."""
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    figure = Figure(figsize=(11.0, 3.1 * rows + 0.9), layout=ConstrainedLayoutEngine(wspace=0.05, hspace=0.05))
+    if ships is not None:
+        title += f": {ships.data.name}"
+        if ships.other is not None:
+            title += f" (solid), {ships.other.name} (dashed)"
+    figure.suptitle(title, fontsize=FONT + 2, color=INK)
+    return figure, list(figure.subplots(rows, 3, squeeze=False).ravel())
+
+
+def finish(axes: Axes, title: str, y_label: str, x_label: str, *, to: float | None = None) -> None:
+    """Label axes; frequency axes end at `to` [rad/s] and have the period on top."""
+    axes.set_title(title, fontsize=FONT, color=INK, loc="left")
+    axes.set_xlabel(x_label, fontsize=SMALL, color=INK)
+    axes.set_ylabel(y_label, fontsize=SMALL, color=INK)
+    axes.tick_params(labelsize=SMALL, colors=INK)
+    axes.grid(color=GRID, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["right"]].set_visible(False)
+    axes.axhline(0.0, color=INK, linewidth=0.6)
+    if to is None:
+        axes.spines[["top"]].set_visible(False)
+        return
+    axes.set_xlim(0.0, to)
+    top = axes.secondary_xaxis("top")
+    marks = [period for period in PERIOD_MARKS if 2.0 * np.pi / period <= to and (to < 3.0 or period not in (8, 30))]
+    top.set_xticks([2.0 * np.pi / period for period in marks], [f"{period}" for period in marks])
+    top.tick_params(labelsize=SMALL - 1, colors="#707070", length=2)
+    top.set_xlabel("period [s]", fontsize=SMALL - 1, color="#707070", labelpad=2)
+    axes.title.set_position((0.0, 1.0))
+
+
+def last(ships: Ships) -> float:
+    """Return where frequency axes end [rad/s]."""
+    return float(ships.data.omega[-1])
+
+
+def radiation(ships: Ships, title: str, letter: str, pairs: list[tuple[int, int]]) -> Figure:
+    """Draw entries of the added mass (A) or damping (B) matrix: tables as lines, state space as dots."""
+    figure, all_axes = grid(title, ships)
+    for axes, (i, j) in zip(all_axes, pairs, strict=True):
+        for (data, style), colour in zip(ships.each(), COLOURS, strict=False):
+            table = data.added_mass if letter == "A" else data.damping
+            fine = np.linspace(data.omega[0], data.omega[-1], 45)
+            response = data.fit.response(fine)[:, i, j]
+            fitted = data.added_mass_inf[i, j] + response.imag / fine if letter == "A" else response.real
+            axes.plot(data.omega, table[:, i, j] / 1e3, style, color=colour, linewidth=1.5, label=f"{data.name}: table")
+            axes.plot(fine, fitted / 1e3, ".", color=colour, markersize=3.5, label="its state space")
+            if letter == "A":
+                axes.plot(
+                    last(ships), data.added_mass_inf[i, j] / 1e3, "<", color=colour, label="at infinite frequency"
+                )
+        power = (i > 2) + (j > 2)
+        unit = (("t", "t m", "t m²") if letter == "A" else ("kN s/m", "kN s", "kN m s"))[power]
+        name = f"{MODES[i]}" if i == j else f"{MODES[i]} by {MODES[j]}"
+        finish(axes, f"{letter}{i + 1}{j + 1}  {name}", f"[{unit}]", "frequency [rad/s]", to=last(ships))
+    legend_below(figure, all_axes[0])
+    return figure
+
+
+def added_mass(ships: Ships) -> Figure:
+    """Draw the diagonal of the added mass."""
+    return radiation(ships, "Added mass", "A", [(i, i) for i in range(6)])
+
+
+def damping(ships: Ships) -> Figure:
+    """Draw the diagonal of the radiation damping."""
+    return radiation(ships, "Radiation damping", "B", [(i, i) for i in range(6)])
+
+
+def coupling(ships: Ships) -> Figure:
+    """Draw the coupling terms of the added mass."""
+    return radiation(ships, "Added mass, coupling", "A", [(0, 2), (0, 4), (2, 4), (1, 3), (1, 5), (3, 5)])
+
+
+def impulse(fit: RadiationFit, time: Array) -> Array:
+    """Return the retardation functions (k, 6, 6) of a state-space model at times on an even grid from 0 [s]."""
+    out = np.zeros((len(time), 6, 6))
+    for block, modes in enumerate((LONGITUDINAL, LATERAL)):
+        turn = np.stack([expm(section * (time[1] - time[0])) for section in fit.a[block]])
+        state = fit.b[block]
+        for k in range(len(time)):
+            out[k][np.ix_(modes, modes)] = np.einsum("ijkm,km->ij", fit.c[block], state)
+            state = np.einsum("kmn,kn->km", turn, state)
+    return out
+
+
+def memory(ships: Ships) -> Figure:
+    """Draw retardation functions from the damping (lines) and of the state-space model (dots)."""
+    figure, all_axes = grid("Retardation functions K(t)", ships)
+    time = np.linspace(0.0, 15.0, 301)
+    for (data, style), colour in zip(ships.each(), COLOURS, strict=False):
+        integral, model = retardation(data.omega, data.damping, time), impulse(data.fit, time)
+        for mode, axes in enumerate(all_axes):
+            axes.plot(
+                time,
+                integral[:, mode, mode] / 1e3,
+                style,
+                color=colour,
+                linewidth=1.5,
+                label=f"{data.name}: from damping",
+            )
+            axes.plot(
+                time[::4], model[::4, mode, mode] / 1e3, ".", color=colour, markersize=3.5, label="its state space"
+            )
+    for mode, axes in enumerate(all_axes):
+        unit = "kN/m" if mode < 3 else "kN m"
+        finish(axes, f"K{mode + 1}{mode + 1}  {MODES[mode]}", f"[{unit}]", "time [s]")
+        axes.set_xlim(0.0, time[-1])
+    legend_below(figure, all_axes[0])
+    return figure
+
+
+def by_direction(axes: Axes, data: HydroDatabase, values: Complex | Array, style: str) -> None:
+    """Draw one line per direction of a table (n, m)."""
+    for wanted, colour in zip(DIRECTIONS_DEG, COLOURS, strict=True):
+        at = int(np.argmin(np.abs(np.rad2deg(data.direction) - wanted)))
+        label = f"{np.rad2deg(data.direction[at]):.0f}°" if style == "-" else None
+        axes.plot(data.omega, values[:, at], style, color=colour, linewidth=1.3, label=label)
+
+
+def legend_below(figure: Figure, axes: Axes, title: str | None = None) -> None:
+    """Put the legend of one of the axes below all of them."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=len(labels), fontsize=SMALL, frameon=False,
+        title=title, title_fontsize=SMALL,
+    )  # fmt: skip
+
+
+def excitation(ships: Ships) -> Figure:
+    """Draw amplitudes of the wave loads."""
+    figure, all_axes = grid("Wave loads per wave amplitude", ships)
+    for mode, axes in enumerate(all_axes):
+        for data, style in ships.each():
+            by_direction(axes, data, np.abs(data.excitation[..., mode]) / 1e3, style)
+        unit = "kN/m" if mode < 3 else "kN m/m"
+        finish(axes, f"F{mode + 1}  {MODES[mode]}", f"[{unit}]", "frequency [rad/s]", to=last(ships))
+    legend_below(figure, all_axes[0], TOWARD)
+    return figure
+
+
+def drift(ships: Ships) -> Figure:
+    """Draw the mean second-order loads."""
+    figure, all_axes = grid("Mean drift per squared wave amplitude", ships, rows=1)
+    for column, (axes, name) in enumerate(zip(all_axes, ("surge", "sway", "yaw"), strict=True)):
+        for data, style in ships.each():
+            by_direction(axes, data, data.drift[..., column] / 1e3, style)
+        finish(axes, name, "[kN/m²]" if column < 2 else "[kN m/m²]", "frequency [rad/s]", to=last(ships))
+    legend_below(figure, all_axes[0], TOWARD)
+    return figure
+
+
+def motions(ships: Ships) -> Figure:
+    """Draw amplitudes of the motions, with natural periods marked."""
+    figure, all_axes = grid("Motions of the CoG per wave amplitude", ships)
+    assert ships.mass6 is not None
+    for data, style in ships.each():
+        table = np.abs(raos(data, ships.mass6, ships.extra_damping))
+        for mode, axes in enumerate(all_axes):
+            by_direction(axes, data, table[..., mode] if mode < 3 else np.rad2deg(table[..., mode]), style)
+    periods = natural_periods(ships.data, ships.mass6)
+    for mode, axes in enumerate(all_axes):
+        finish(axes, MODES[mode], "[m/m]" if mode < 3 else "[deg/m]", "frequency [rad/s]", to=last(ships))
+        top = 1.5 if mode < 3 else axes.get_ylim()[1]
+        axes.set_ylim(0.0, min(top, axes.get_ylim()[1]))
+        if MODES[mode] in periods:
+            at = 2.0 * np.pi / periods[MODES[mode]]
+            axes.axvline(at, color=INK, linewidth=0.9, linestyle=":")
+            late = at > 0.55 * last(ships)
+            axes.annotate(
+                f"natural period {periods[MODES[mode]]:.2f} s", (at, 0.98), xycoords=("data", "axes fraction"),
+                xytext=(-3 if late else 3, 0), textcoords="offset points", fontsize=SMALL - 1, color=INK, va="top",
+                ha="right" if late else "left",
+            )  # fmt: skip
+    legend_below(figure, all_axes[0], TOWARD)
+    return figure
+
+
+def hull(points: Array, panels: Array) -> Figure:
+    """Draw the panels from the side, from above, from the bow and the stern."""
+    from matplotlib.collections import PolyCollection
+
+    figure, all_axes = grid(f"Hull: {len(panels)} panels", None, rows=1)
+    views = (("from the side", (0, 2), "xz"), ("from below", (0, 1), "xy"), ("sections", (1, 2), "yz"))
+    corners = np.asarray(points)[np.asarray(panels)]
+    for axes, (title, plane, names) in zip(all_axes, views, strict=True):
+        flat = corners[:, :, list(plane)]
+        axes.add_collection(PolyCollection(list(flat), facecolors="none", edgecolors=COLOURS[0], linewidths=0.4))
+        axes.set_aspect("equal")
+        axes.autoscale_view()
+        finish(axes, title, f"{names[1]} [m]", f"{names[0]} [m]")
+    return figure
