@@ -1,4 +1,4 @@
-"""The command line: run, check, list, report, demo, bench."""
+"""The command line: run, check, list, report, demo, bench; hydro has its own file."""
 
 import signal
 import sys
@@ -12,13 +12,14 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from shipcrane_twin import __version__
+from shipcrane_twin.cli_hydro import app as hydro_app
 from shipcrane_twin.config.load import list_scenarios, load_scenario, read_yaml
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.running.folder import make_run_folder
 
 DONE, BAD_INPUT, NODE_FAILED, INTERRUPTED = 0, 2, 3, 130
-DEMO = "case2"
+DEMO = "case3"
 
 app = typer.Typer(
     help="Digital twin of a ship, its deck crane and the load on the hook.",
@@ -27,6 +28,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+app.add_typer(hydro_app, name="hydro")
 console = Console()
 errors = Console(stderr=True)
 
@@ -103,8 +105,10 @@ def bench(
 ) -> None:
     """Measure speed as a ratio to real time, inline and graph, with 10, 20 and 50 ms steps."""
     from shipcrane_twin.running.bench import run_bench
+    from shipcrane_twin.running.bench_hull import bench_hull
 
     run_bench(scenario, until, console)
+    bench_hull(scenario, console)
 
 
 def parse_speed(text: str) -> float:

@@ -10,7 +10,7 @@ from shipcrane_twin.cosim.topics import BY_NAME, JOINT_FIELDS, JOINTS, TOPICS
 
 DOCS = Path(__file__).resolve().parents[1] / "msg_docs"
 PAGES = {path.name: path.read_text(encoding="utf-8") for path in sorted(DOCS.glob("*.md"))}
-RATES = {"step": "every macro step", "telemetry": "every telemetry period", "irregular": "irregular"}
+RATES = {"step": "every macro step", "telemetry": "every telemetry period", "once": "once", "irregular": "irregular"}
 SERVICES = {"/clock/pause", "/clock/step"}
 NOT_OURS = {"/parameter_events", "/rosout"}
 RCLPYS = {"use_sim_time", "start_type_description_service"}
@@ -96,7 +96,9 @@ def test_depth_of_the_queues_is_the_one_told():
     from shipcrane_twin.ros.links import LOOP_DEPTH
 
     for topic in TOPICS:
-        if topic.rate != "irregular":
+        if topic.rate == "once":
+            assert facts(topic.name)["QoS"] == "reliable, transient local, keep last 1"
+        elif topic.rate != "irregular":
             assert facts(topic.name)["QoS"] == f"reliable, volatile, keep last {LOOP_DEPTH}"
 
 

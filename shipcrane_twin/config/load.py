@@ -64,7 +64,7 @@ def known_names() -> str:
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """Return a YAML file's mapping; ConfigError with the line if it cannot be read."""
+    """Return a YAML file's mapping, with the files it names found; ConfigError with the line if it cannot be read."""
     try:
         data = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except yaml.YAMLError as err:
@@ -73,7 +73,21 @@ def read_yaml(path: Path) -> dict[str, Any]:
         raise ConfigError(f"{path}: cannot be read: {err}") from None
     if not isinstance(data, dict):
         raise ConfigError(f"{path}: expected a mapping of keys to values, found {type(data).__name__}")
-    return data
+    return find_files(data, path.parent)
+
+
+def find_files(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the mapping with every ``..._file`` that lies in a folder made absolute; others stay as they are."""
+    out: dict[str, Any] = {}
+    for key, value in data.items():
+        if isinstance(value, dict):
+            value = find_files(value, folder)
+        elif isinstance(value, list):
+            value = [find_files(item, folder) if isinstance(item, dict) else item for item in value]
+        elif key.endswith("_file") and isinstance(value, str) and (folder / value).is_file():
+            value = str((folder / value).resolve())
+        out[key] = value
+    return out
 
 
 def merge(base: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
@@ -109,13 +123,19 @@ def resolve_uses(data: dict[str, Any], path: Path, users: tuple[Path, ...] = ())
     raise ConfigError(f"{path}: use is {name!r}, expected a YAML file beside it or under {config_dir()}")
 
 
+def data_file(name: str) -> Path:
+    """Return the file that a key ending in ``_file`` names once a scenario is read: absolute, or in the package."""
+    return config_dir() / name
+
+
 def parse_override(text: str) -> tuple[list[str], Any]:
     """Return key path and value of one ``key=value``; ConfigError if it has no equals sign."""
     key, equals, value = text.partition("=")
     if not equals or not key.strip():
         raise ConfigError(f"--set {text!r}: expected key=value, for instance macro_step_ms=50")
     try:
-        return key.strip().split("."), yaml.load(value, _Loader)
+        path = key.strip().split(".")
+        return path, find_files({path[-1]: yaml.load(value, _Loader)}, Path())[path[-1]]
     except yaml.YAMLError:
         raise ConfigError(f"--set {text!r}: the value is not valid YAML") from None
 

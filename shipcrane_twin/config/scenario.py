@@ -12,6 +12,7 @@ from shipcrane_twin.config.crane import (
     WinchConfig,
     WireConfig,
 )
+from shipcrane_twin.config.environment import WAVE_KEYS, EnvironmentConfig
 from shipcrane_twin.config.settings import Number, Text, Whole, settings
 from shipcrane_twin.config.vessel import DpConfig, VesselConfig
 
@@ -36,16 +37,6 @@ class LockstepConfig:
     run_ahead_steps: Annotated[Whole, Ge(1), Le(50)]
     silence_timeout_s: Positive
     speed: NotNegative
-
-
-@settings
-class EnvironmentConfig:
-    """Steady current and wind; directions are towards, clockwise from north."""
-
-    current_speed_m_s: Annotated[Number, Ge(0), Le(10)]
-    current_direction_to_deg: Number
-    wind_speed_m_s: Annotated[Number, Ge(0), Le(100)]
-    wind_direction_to_deg: Number
 
 
 @settings
@@ -135,6 +126,7 @@ def problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         *crane_problems(scenario),
         *operation_problems(scenario),
         *winch_problems(scenario),
+        *weather_problems(scenario),
     ]
 
 
@@ -207,4 +199,25 @@ def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         found.append(
             (["payload", "hook_mass_kg"], f"expected no more than payload.mass_kg = {payload.mass_kg:g}, a part of it")
         )
+    return found
+
+
+def weather_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that each wave system has the keys of its spectrum and no other, and the order of the current's depths."""
+    found: list[tuple[list[str | int], str]] = []
+    own = set().union(*WAVE_KEYS.values())
+    for i, system in enumerate(scenario.environment.waves.systems):
+        here: list[str | int] = ["environment", "waves", "systems", i]
+        needed = WAVE_KEYS[system.spectrum]
+        given = {key for key in own if getattr(system, key) is not None}
+        if given != needed:
+            found.append((here, f"expected {', '.join(sorted(needed))} with the spectrum {system.spectrum}"))
+        if system.spectrum == "regular" and system.spreading_exponent is not None:
+            found.append(([*here, "spreading_exponent"], "expected none: a regular wave has one direction"))
+    depths = [row[0] for row in scenario.environment.current_profile]
+    if depths != sorted(set(depths)) or len(depths) == 1:
+        found.append((["environment", "current_profile"], "expected two rows or more, depths rising"))
+    ballast = scenario.vessel.ballast
+    if ballast.mode != "values" and (ballast.heave_n or ballast.roll_n_m or ballast.pitch_n_m):
+        found.append((["vessel", "ballast", "mode"], "expected 'values', because values are given"))
     return found

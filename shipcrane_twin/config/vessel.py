@@ -1,6 +1,6 @@
 """Settings of the ship: hull, wind areas, thrusters and dynamic positioning."""
 
-from typing import Annotated, TypeVar
+from typing import Annotated, Literal, TypeVar
 
 import numpy as np
 from annotated_types import Ge, Gt, Le, Len
@@ -33,17 +33,6 @@ def check_matrix(rows: Rows) -> Rows:
     return rows
 
 
-def check_restoring(rows: Rows) -> Rows:
-    """Raise ValueError unless the ship floats upright, or at a stiffness that the hull model would not read."""
-    unread = np.array(rows)
-    if np.linalg.eigvalsh(unread[2:5, 2:5]).min() <= 0.0:
-        raise ValueError("positive stiffness in heave, roll and pitch")
-    unread[[2, 2, 3, 4, 4], [2, 4, 3, 2, 4]] = 0.0
-    if unread.any():
-        raise ValueError("zeros outside heave, roll, pitch and heave with pitch, all that this hull has")
-    return rows
-
-
 CurrentTable = Annotated[tuple[CurrentRow, ...], Len(2), AfterValidator(check_directions)]
 WindTable = Annotated[tuple[WindRow, ...], Len(2), AfterValidator(check_directions)]
 HullMatrix = Annotated[Matrix6, AfterValidator(check_matrix)]
@@ -51,16 +40,26 @@ HullMatrix = Annotated[Matrix6, AfterValidator(check_matrix)]
 
 @settings
 class HullConfig:
-    """Water loads about the CoG; matrices in forward-right-down axes, SI units, as ship data has them."""
+    """Water loads: potential flow from the hydrodynamic database, the rest by coefficients about the CoG, SI units."""
 
-    added_mass_frd: HullMatrix
-    damping_frd: HullMatrix
-    restoring_frd: Annotated[HullMatrix, AfterValidator(check_restoring)]
+    hydrodynamics_file: Text
+    viscous_damping_frd: HullMatrix
+    roll_damping_ratio: Annotated[Number, Ge(0), Le(0.5)]
     roll_quadratic_n_m_s2: NotNegative
-    yaw_quadratic_n_m_s2: NotNegative
+    cross_flow_coefficient: NotNegative
     current_front_area_m2: Positive
     current_side_area_m2: Positive
     current_table: CurrentTable
+
+
+@settings
+class BallastConfig:
+    """Load that ballast adds: none, what levels the ship at the start, or the values given here."""
+
+    mode: Literal["none", "level", "values"]
+    heave_n: Number = 0.0
+    roll_n_m: Number = 0.0
+    pitch_n_m: Number = 0.0
 
 
 @settings
@@ -93,15 +92,18 @@ class InitialConfig:
 
 @settings
 class VesselConfig:
-    """The ship; positions from aft perpendicular, centre line and baseline (x forward, y port, z up)."""
+    """The ship; positions from aft perpendicular, centre line and baseline (x forward, y port, z up).
+
+    Its mass is what the hull displaces (water density times the database's volume).
+    """
 
     name: Text
     length_m: Positive
     draught_m: Positive
-    mass_kg: Positive
     cog_m: Vector3
     inertia_kg_m2: tuple[Positive, Positive, Positive]
     hull: HullConfig
+    ballast: BallastConfig
     wind_areas: WindAreasConfig
     thruster_time_constant_s: Positive
     thrusters: Annotated[tuple[ThrusterConfig, ...], Len(1)]

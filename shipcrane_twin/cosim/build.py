@@ -1,35 +1,55 @@
 """From settings to the parameters of the kernels: units to SI, marine axes to FLU."""
 
+import functools
 import math
+from pathlib import Path
 
 import numpy as np
 
 from shipcrane_twin.config.crane import CraneConfig, DriveConfig, LinkConfig, TipConfig
+from shipcrane_twin.config.load import data_file
 from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.config.vessel import VesselConfig
 from shipcrane_twin.control.dp import DpParams, allocation_matrix, pid_gains
+from shipcrane_twin.cosim import weather
+from shipcrane_twin.hydro.database import HydroDatabase, moved
+from shipcrane_twin.hydro.files import load_database
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import ChainParams, make_chain
 from shipcrane_twin.physics.crane_cylinders import DriveParams, LinearDrive, TriangleDrive, make_drives
 from shipcrane_twin.physics.frames import flu_matrix_from_frd
 from shipcrane_twin.physics.hull import HullParams
 from shipcrane_twin.physics.payload import WireParams
+from shipcrane_twin.physics.radiation import RadiationParams
+from shipcrane_twin.physics.sea.components import Waves
+from shipcrane_twin.physics.sea.loads import WaveLoadParams, wave_load_params
 from shipcrane_twin.physics.thrusters import ThrusterParams
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.wind import WindParams
 
+CROSS_FLOW_STRIPS = 20
+DATABASE_TOLERANCE = 1e-3
+"""Relative difference at which a scenario's particulars are not those of the hull's database."""
 
-def hull_params(scenario: Scenario) -> HullParams:
-    """Return the hull's coefficients about the CoG in FLU."""
+
+def hull_params(scenario: Scenario, data: HydroDatabase) -> HullParams:
+    """Return the hull's coefficients about the CoG in FLU; the ballast is not in yet, it depends on the start."""
     vessel = scenario.vessel
     hull = vessel.hull
     table = np.array(hull.current_table)
     table[:, 0] = np.deg2rad(table[:, 0])
     half_rho = 0.5 * scenario.constants.water_density_kg_m3
+    damping = flu_matrix_from_frd(np.array(hull.viscous_damping_frd))
+    damping[3, 3] += 2.0 * hull.roll_damping_ratio * roll_impedance(data, vessel.inertia_kg_m2[0])
+    ballast = vessel.ballast
     return HullParams(
-        added_mass=flu_matrix_from_frd(np.array(hull.added_mass_frd)),
-        damping=flu_matrix_from_frd(np.array(hull.damping_frd)),
-        restoring=flu_matrix_from_frd(np.array(hull.restoring_frd)),
-        quadratic=np.array([hull.roll_quadratic_n_m_s2, hull.yaw_quadratic_n_m_s2]),
+        added_mass=data.added_mass_inf,
+        damping=damping,
+        restoring=data.restoring,
+        roll_quadratic=hull.roll_quadratic_n_m_s2,
+        strips=cross_flow_strips(vessel, half_rho),
+        ballast=np.array([ballast.heave_n, ballast.roll_n_m, ballast.pitch_n_m]),
         current_table=table,
         current_scale=half_rho
         * np.array(
@@ -43,12 +63,68 @@ def hull_params(scenario: Scenario) -> HullParams:
     )
 
 
+def roll_impedance(data: HydroDatabase, inertia: float) -> float:
+    """Return ``sqrt((I44 + A44) C44)`` with the added mass at the natural frequency [N m s]."""
+    omega = 1.0
+    for _ in range(30):
+        added = np.interp(omega, data.omega, data.added_mass[:, 3, 3])
+        omega = math.sqrt(data.restoring[3, 3] / (inertia + added))
+    return float(data.restoring[3, 3]) / omega
+
+
+def cross_flow_strips(vessel: VesselConfig, half_rho: float) -> Array:
+    """Return place [m from the CoG] and drag [N s2/m2] of equal strips between the perpendiculars, shape (n, 2)."""
+    each = vessel.length_m / CROSS_FLOW_STRIPS
+    place = (np.arange(CROSS_FLOW_STRIPS) + 0.5) * each - vessel.cog_m[0]
+    drag = half_rho * vessel.hull.cross_flow_coefficient * vessel.draught_m * each
+    return np.column_stack((place, np.full(CROSS_FLOW_STRIPS, drag)))
+
+
+def hydro_database(scenario: Scenario) -> HydroDatabase:
+    """Return the hull's database about the scenario's CoG.
+
+    Raises
+    ------
+    ConfigError
+        If it cannot be read or is that of another ship, or of other water.
+    """
+    vessel = scenario.vessel
+    path = data_file(vessel.hull.hydrodynamics_file)
+    data = moved(cached_database(path), np.array(vessel.cog_m))
+    for key, value, stored in (
+        ("vessel.draught_m", vessel.draught_m, data.draught),
+        ("vessel.length_m", vessel.length_m, data.length),
+        ("constants.water_density_kg_m3", scenario.constants.water_density_kg_m3, data.water_density),
+        ("constants.gravity_m_s2", scenario.constants.gravity_m_s2, data.gravity),
+    ):
+        if abs(value / stored - 1.0) > DATABASE_TOLERANCE:
+            raise ConfigError(
+                f"{scenario.name}: {key} is {value:g}, expected {stored:g} as in vessel.hull.hydrodynamics_file "
+                f"({path}); change it or build the database anew"
+            )
+    afloat = data.restoring[2:5, 2:5]
+    if np.linalg.eigvalsh(afloat).min() <= 0.0:
+        raise ConfigError(
+            f"{scenario.name}: the hull has no stiffness in heave, roll or pitch (C44 = {afloat[1, 1]:.4g} N m/rad) "
+            f"with vessel.cog_m at {vessel.cog_m[2]:g} m above the baseline; lower it"
+        )
+    return data
+
+
+@functools.lru_cache(maxsize=4)
+def cached_database(path: Path) -> HydroDatabase:
+    """Return a database that is read once: every subsystem of an inline run asks for it."""
+    return load_database(path)
+
+
 def vessel_params(scenario: Scenario) -> VesselParams:
     """Return the ship's constants."""
     vessel = scenario.vessel
+    data = hydro_database(scenario)
     return VesselParams(
-        rigid_mass=np.diag([vessel.mass_kg] * 3 + list(vessel.inertia_kg_m2)),
-        hull=hull_params(scenario),
+        rigid_mass=np.diag([data.mass] * 3 + list(vessel.inertia_kg_m2)),
+        hull=hull_params(scenario, data),
+        radiation=RadiationParams(data.fit.a, data.fit.b, data.fit.c),
         cog=np.array(vessel.cog_m),
         crane_base=np.array(scenario.crane.base_m),
         gravity=scenario.constants.gravity_m_s2,
@@ -65,6 +141,23 @@ def wind_params(scenario: Scenario) -> WindParams:
         [areas.front_area_m2, side, side * side / length, side * length]
     )
     return WindParams(table=table, scale=scale)
+
+
+def wave_params(scenario: Scenario) -> tuple[WaveLoadParams, Waves]:
+    """Return what turns the sea into loads on the hull, and the sea."""
+    data = hydro_database(scenario)
+    waves = scenario.environment.waves
+    sea = weather.sea(scenario)
+    params = wave_load_params(
+        sea,
+        data.omega,
+        data.direction,
+        data.excitation,
+        data.drift,
+        first_order=waves.first_order,
+        slow_drift=waves.slow_drift,
+    )
+    return params, sea
 
 
 def thruster_params(scenario: Scenario) -> ThrusterParams:

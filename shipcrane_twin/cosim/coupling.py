@@ -14,6 +14,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
     "environment": ("/vessel/odom",),
     "vessel": (
         "/environment/current",
+        "/environment/wave_wrench",
         "/environment/wind_wrench",
         "/crane/base_wrench",
         "/crane/base_inertia",
@@ -24,7 +25,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
 """The topics that each subsystem waits for in every step."""
 
 FEEDBACK: dict[tuple[str, str], str] = {
-    ("vessel", "environment"): "ship motion to wind loads",
+    ("vessel", "environment"): "ship motion to wave and wind loads",
     ("crane", "vessel"): "crane wrench and inertia to ship",
     ("payload", "crane"): "wire force and felt mass to crane tip",
 }

@@ -30,6 +30,8 @@ class Rest:
 
     Attributes
     ----------
+    params : VesselParams
+        The ship with its ballast.
     vessel : float64, shape (13,)
         State of the ship, see `physics.vessel`.
     joints : float64, shape (n,)
@@ -42,6 +44,7 @@ class Rest:
         Force of the wire on the tip [N, world].
     """
 
+    params: VesselParams
     vessel: Array
     joints: Array
     tip_b: Array
@@ -61,6 +64,10 @@ def at_rest(scenario: Scenario) -> Rest:
     force_w = np.array([0.0, 0.0, -mass * params.gravity])
     start = scenario.vessel.initial
     yaw = yaw_from_heading(start.heading_deg)
+    if scenario.vessel.ballast.mode == "level":
+        upright = np.array([params.hull.design_height, 0.0, 0.0])
+        ballast = -unbalanced(params, inertia, tip_b, force_w, upright, yaw)
+        params = params._replace(hull=params.hull._replace(ballast=ballast))
     height, roll, pitch = equilibrium(params, inertia, tip_b, force_w, yaw)
 
     vessel = np.zeros(13)
@@ -68,7 +75,7 @@ def at_rest(scenario: Scenario) -> Rest:
     vessel[3:7] = quat_from_euler(roll, pitch, yaw)
     rot = matrix_from_quat(vessel[3:7])
     tip_w = vessel[:3] + rotate_to_world(rot, params.crane_base + tip_b - params.cog)
-    return Rest(vessel, joints, tip_b, tip_w, inertia, force_w)
+    return Rest(params, vessel, joints, tip_b, tip_w, inertia, force_w)
 
 
 def equilibrium(

@@ -7,7 +7,8 @@ A signal is a flat float64 array. Its columns by message type:
 - TwistStamped, AccelStamped: linear (3), angular (3);
 - WrenchStamped: force (3), torque (3);
 - InertiaStamped: mass, CoM (3), xx xy xz yy yz zz;
-- JointState: position, velocity and effort of all joints, those that the topic carries.
+- JointState: position, velocity and effort of all joints, those that the topic carries;
+- PointCloud2: one row of named columns per point, any number of points.
 """
 
 from dataclasses import dataclass
@@ -20,13 +21,14 @@ ACCEL = "geometry_msgs/msg/AccelStamped"
 WRENCH = "geometry_msgs/msg/WrenchStamped"
 INERTIA = "geometry_msgs/msg/InertiaStamped"
 JOINTS = "sensor_msgs/msg/JointState"
+CLOUD = "sensor_msgs/msg/PointCloud2"
 CLOCK = "rosgraph_msgs/msg/Clock"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 WIDTHS = {ODOMETRY: 13, POSE: 7, TWIST: 6, ACCEL: 6, WRENCH: 6, INERTIA: 10}
 JOINT_FIELDS = ("position", "velocity", "effort")
 
-Rate = Literal["step", "telemetry", "irregular"]
+Rate = Literal["step", "telemetry", "once", "irregular"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,11 +42,12 @@ class Topic:
     publisher : str
         The subsystem (or ``clock``, ``operator``) that publishes it.
     rate : str
-        ``step``: every macro step; ``telemetry``: every telemetry period; ``irregular``.
+        ``step``: every macro step; ``telemetry``: every telemetry period; ``once``: at t = 0, latched;
+        ``irregular``.
     frame, child_frame : str
         Header frame and, for odometry, child frame.
     joints, fields : tuple of str
-        For JointState: names, and which of position, velocity, effort are filled.
+        For JointState: names, and which of position, velocity, effort are filled. For PointCloud2: the columns.
     about : str
         What it means, with units and reference point.
     """
@@ -93,11 +96,27 @@ TOPICS: tuple[Topic, ...] = (
         about="Velocity of the air, ENU [m/s]; angular part zero.",
     ),
     Topic(
+        name="/environment/sea_state",
+        type=CLOUD,
+        publisher="environment",
+        rate="once",
+        frame="map",
+        fields=("amplitude", "omega", "number_x", "number_y", "phase"),
+        about="Components of the sea; elevation: sum of amplitude cos(omega t - number x + phase); SI units.",
+    ),
+    Topic(
+        name="/environment/wave_wrench",
+        type=WRENCH,
+        publisher="environment",
+        frame="base_link",
+        about="Wave load on the ship about its CoG, first-order and slow drift, base_link axes [N, N m].",
+    ),
+    Topic(
         name="/environment/wind_wrench",
         type=WRENCH,
         publisher="environment",
         frame="base_link",
-        about="Wind load on the ship about its CoG, base_link axes [N, N m], held over the step.",
+        about="Wind load on the ship about its CoG, base_link axes [N, N m].",
     ),
     Topic(
         name="/vessel/odom",

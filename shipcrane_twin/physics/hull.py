@@ -1,7 +1,7 @@
-"""Loads of the water on the hull: restoring, added mass, damping and current.
+"""Loads of the water on the hull: restoring, added mass, viscous damping and current.
 
-This is the simple hull: constant (infinite-frequency) added mass and damping constant at the
-value of each mode's natural period. All matrices are about the ship's CoG in FLU axes.
+With the memory of `physics.radiation` this is the unified model of Fossen (2005): one set of equations for
+manoeuvring and seakeeping. All matrices are about the ship's CoG in FLU axes.
 """
 
 from typing import NamedTuple
@@ -20,9 +20,15 @@ class HullParams(NamedTuple):
     Attributes
     ----------
     added_mass, damping, restoring : float64, shape (6, 6)
-        Order surge, sway, heave, roll, pitch, yaw [kg, kg m, kg m2], [N s/m, ...], [N/m, N, N m/rad].
-    quadratic : float64, shape (2,)
-        Roll and yaw moments per squared rate [N m s2/rad2].
+        Infinite-frequency added mass, viscous damping, hydrostatic stiffness; order surge, sway, heave, roll,
+        pitch, yaw [kg, kg m, kg m2], [N s/m, ...], [N/m, N, N m/rad].
+    roll_quadratic : float
+        Roll moment per squared rate [N m s2/rad2].
+    strips : float64, shape (n, 2)
+        Place forward of the CoG [m] and cross-flow drag per squared sideways speed [N s2/m2] of strips
+        along the hull.
+    ballast : float64, shape (3,)
+        Constant heave force, world up [N], and roll and pitch moments about the CoG [N m].
     current_table : float64, shape (n, 4)
         Direction the water goes to relative to the bow, 0 (from astern) to pi [rad]; coefficients of
         surge, sway and yaw in FRD, uniform spacing.
@@ -35,7 +41,9 @@ class HullParams(NamedTuple):
     added_mass: Array
     damping: Array
     restoring: Array
-    quadratic: Array
+    roll_quadratic: float
+    strips: Array
+    ballast: Array
     current_table: Array
     current_scale: Array
     design_height: float
@@ -60,14 +68,15 @@ def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -
 
     Notes
     -----
-    Gradient of ``V = (C33 z^2 + 2 C35 z pitch + C44 roll^2 + C55 pitch^2) / 2``: linear in the Euler
-    angles, conservative at any attitude. The moment has no component about the world's vertical.
+    Gradient of ``V = (C33 z^2 + 2 C35 z pitch + C44 roll^2 + C55 pitch^2) / 2`` less the work of the ballast:
+    linear in the Euler angles, conservative at any attitude. The moment has no component about the
+    world's vertical.
     """
     rise = height - hull.design_height
     c = hull.restoring
-    force_up = -c[2, 2] * rise - c[2, 4] * pitch
-    roll_load = -c[3, 3] * roll
-    pitch_load = -c[4, 2] * rise - c[4, 4] * pitch
+    force_up = hull.ballast[0] - c[2, 2] * rise - c[2, 4] * pitch
+    roll_load = hull.ballast[1] - c[3, 3] * roll
+    pitch_load = hull.ballast[2] - c[4, 2] * rise - c[4, 4] * pitch
     sr, cr, tp = np.sin(roll), np.cos(roll), np.tan(pitch)
     moment_b = np.array(
         [
@@ -103,8 +112,34 @@ def current_load(hull: HullParams, flow_x: float, flow_y: float) -> Array:
 
 
 @njit(cache=True)
+def turning_drag(hull: HullParams, sway: float, yaw_rate: float) -> tuple[float, float]:
+    """Return sway force [N] and yaw moment [N m] that cross-flow drag adds when the ship turns, FLU.
+
+    Parameters
+    ----------
+    hull : HullParams
+    sway, yaw_rate : float
+        Relative to the water [m/s, rad/s].
+
+    Notes
+    -----
+    Each strip is dragged by its own sideways speed ``v + x r`` (Faltinsen 1990, section 6; Fossen 2011,
+    equation 6.87). What the strips feel in pure sway is taken off, because the current coefficients hold it.
+    """
+    force = moment = 0.0
+    straight = sway * abs(sway)
+    for i in range(hull.strips.shape[0]):
+        place = hull.strips[i, 0]
+        speed = sway + place * yaw_rate
+        drag = -hull.strips[i, 1] * (speed * abs(speed) - straight)
+        force += drag
+        moment += place * drag
+    return force, moment
+
+
+@njit(cache=True)
 def damping_load(hull: HullParams, nu_rel_b: Array) -> Array:
-    """Return the damping load (6,) about the CoG for the velocity (6,) relative to the water, body axes."""
+    """Return the viscous load (6,) about the CoG for the velocity (6,) relative to the water, body axes."""
     load = np.zeros(6)
     for i in range(6):
         for j in range(6):
@@ -112,8 +147,10 @@ def damping_load(hull: HullParams, nu_rel_b: Array) -> Array:
     drag = current_load(hull, -nu_rel_b[0], -nu_rel_b[1])
     load[0] += drag[0]
     load[1] += drag[1]
-    load[3] -= hull.quadratic[0] * nu_rel_b[3] * abs(nu_rel_b[3])
-    load[5] += drag[2] - hull.quadratic[1] * nu_rel_b[5] * abs(nu_rel_b[5])
+    turn_force, turn_moment = turning_drag(hull, nu_rel_b[1], nu_rel_b[5])
+    load[1] += turn_force
+    load[3] -= hull.roll_quadratic * nu_rel_b[3] * abs(nu_rel_b[3])
+    load[5] += drag[2] + turn_moment
     return load
 
 

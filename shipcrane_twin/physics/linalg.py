@@ -6,12 +6,12 @@ from shipcrane_twin.physics.arrays import Array
 
 
 @njit(cache=True)
-def solve_in_place(matrix: Array, x: Array) -> bool:
-    """Replace x (n,) by matrix^-1 x for a symmetric positive definite matrix, which becomes L D L^T.
+def factorise(matrix: Array) -> bool:
+    """Replace a symmetric positive definite matrix (n, n) by its factors L D L^T, in the lower triangle.
 
-    Return False, with x spoilt, if a pivot is not positive, as with a value that is not a number.
+    Return False, with the matrix spoilt, if a pivot is not positive, as with a value that is not a number.
     """
-    n = x.shape[0]
+    n = matrix.shape[0]
     for j in range(n):
         pivot = matrix[j, j]
         for k in range(j):
@@ -24,13 +24,31 @@ def solve_in_place(matrix: Array, x: Array) -> bool:
             for k in range(j):
                 element -= matrix[i, k] * matrix[j, k] * matrix[k, k]
             matrix[i, j] = element / pivot
+    return True
+
+
+@njit(cache=True)
+def solve_factorised(factors: Array, x: Array) -> None:
+    """Replace x (n,) by the solution of the equations whose matrix was factorised."""
+    n = x.shape[0]
     for i in range(n):
         for k in range(i):
-            x[i] -= matrix[i, k] * x[k]
+            x[i] -= factors[i, k] * x[k]
     for i in range(n - 1, -1, -1):
-        x[i] /= matrix[i, i]
+        x[i] /= factors[i, i]
         for k in range(i + 1, n):
-            x[i] -= matrix[k, i] * x[k]
+            x[i] -= factors[k, i] * x[k]
+
+
+@njit(cache=True)
+def solve_in_place(matrix: Array, x: Array) -> bool:
+    """Replace x (n,) by matrix^-1 x for a symmetric positive definite matrix, which becomes L D L^T.
+
+    Return False if the matrix is not positive definite.
+    """
+    if not factorise(matrix):
+        return False
+    solve_factorised(matrix, x)
     return True
 
 

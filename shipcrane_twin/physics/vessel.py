@@ -1,7 +1,7 @@
-"""The ship as a rigid body in six degrees of freedom, with the crane's inertia bolted to it.
+"""The ship as a rigid body in six degrees of freedom with the water's memory, and the crane's inertia bolted to it.
 
-State, float64 (13,): position of the CoG in the world (3), quaternion body to world (4), velocity
-of the CoG (3) and angular velocity (3), both in body axes.
+State, float64 (13 + r,): position of the CoG in the world (3), quaternion body to world (4), velocity
+of the CoG (3) and angular velocity (3), both in body axes, memory of the water (r, see `physics.radiation`).
 """
 
 from typing import NamedTuple
@@ -19,7 +19,8 @@ from shipcrane_twin.physics.frames import (
     rotate_to_world,
 )
 from shipcrane_twin.physics.hull import HullParams, added_mass_bias, damping_load, restoring_load
-from shipcrane_twin.physics.linalg import solve_spd
+from shipcrane_twin.physics.linalg import factorise, solve_factorised
+from shipcrane_twin.physics.radiation import RadiationParams, radiation_step
 
 
 class VesselParams(NamedTuple):
@@ -30,6 +31,7 @@ class VesselParams(NamedTuple):
     rigid_mass : float64, shape (6, 6)
         Rigid-body inertia about the CoG.
     hull : HullParams
+    radiation : RadiationParams
     cog : float64, shape (3,)
         CoG in base_link [m].
     crane_base : float64, shape (3,)
@@ -40,6 +42,7 @@ class VesselParams(NamedTuple):
 
     rigid_mass: Array
     hull: HullParams
+    radiation: RadiationParams
     cog: Array
     crane_base: Array
     gravity: float
@@ -91,13 +94,44 @@ def momentum_bias(mass6: Array, nu_b: Array) -> Array:
 
 
 @njit(cache=True)
-def state_rate(params: VesselParams, state: Array, load_b: Array, water_w: Array, attached: Array) -> Array:
-    """Return d(state)/dt (13,).
+def carried_inertia(params: VesselParams, attached: Array) -> tuple[Array, Array]:
+    """Return the rigid inertia (6, 6) of ship and carried body about the CoG, and factors of it with added mass.
 
     Parameters
     ----------
     params : VesselParams
-    state : float64, shape (13,)
+    attached : float64, shape (10,)
+        Rigid body carried along at crane_base.
+
+    Raises
+    ------
+    ValueError
+        If the inertia is not positive definite.
+    """
+    mass6 = params.rigid_mass + attached_inertia(attached, params.crane_base - params.cog)
+    factors = mass6 + params.hull.added_mass
+    if not factorise(factors):
+        raise ValueError("ship: the inertia with added mass is not positive definite")
+    return mass6, factors
+
+
+@njit(cache=True)
+def state_rate(
+    params: VesselParams,
+    inertia: tuple[Array, Array],
+    state: Array,
+    load_b: Array,
+    water_w: Array,
+    attached: Array,
+) -> Array:
+    """Return d(state)/dt (13 + r,).
+
+    Parameters
+    ----------
+    params : VesselParams
+    inertia : tuple
+        Of `carried_inertia` with the same attached body.
+    state : float64, shape (13 + r,)
     load_b : float64, shape (6,)
         Outer force and moment about the CoG, body axes [N, N m].
     water_w : float64, shape (3,)
@@ -107,47 +141,56 @@ def state_rate(params: VesselParams, state: Array, load_b: Array, water_w: Array
 
     Notes
     -----
-    ``(M_RB + M_attached + A) nu_dot = load + weight + restoring + damping - C(nu) nu - C_A(nu_r) nu_r``
-    (Fossen 2011, equation 7.2, about the CoG).
+    ``(M_RB + M_attached + A_inf) nu_dot = load + weight + restoring + viscous + memory - C(nu) nu - C_A(nu_r) nu_r``
+    (Fossen 2005; Fossen 2011, section 8.3, about the CoG).
     """
     quat = state[3:7]
     nu_b = state[7:13]
     rot = matrix_from_quat(quat)
     roll, pitch, _ = euler_from_matrix(rot)
     hull = params.hull
-    offset = params.crane_base - params.cog
-    mass6 = params.rigid_mass + attached_inertia(attached, offset)
+    mass6, factors = inertia
 
     water_b = rotate_to_body(rot, water_w)
     nu_rel_b = nu_b.copy()
     nu_rel_b[:3] -= water_b
 
+    rate = np.empty_like(state)
     total = load_b - momentum_bias(mass6, nu_b)
     total += damping_load(hull, nu_rel_b)
     total += added_mass_bias(hull, nu_rel_b, water_b)
+    radiation_step(params.radiation, state[13:], nu_rel_b, rate[13:], total)
 
     force_up, moment_b = restoring_load(hull, state[2], roll, pitch)
     up_b = rot[2]
     weight_b = (-attached[0] * params.gravity) * up_b
     total[:3] += force_up * up_b + weight_b
-    total[3:] += moment_b + cross(attached[1:4] + offset, weight_b)
+    total[3:] += moment_b + cross(attached[1:4] + params.crane_base - params.cog, weight_b)
 
-    rate = np.empty(13)
+    solve_factorised(factors, total)
     rate[:3] = rotate_to_world(rot, nu_b[:3])
     rate[3:7] = quat_rate(quat, nu_b[3:])
-    rate[7:] = solve_spd(mass6 + hull.added_mass, total)
+    rate[7:13] = total
     return rate
 
 
 @njit(cache=True)
 def vessel_step(
-    params: VesselParams, state: Array, load_b: Array, water_w: Array, attached: Array, step_s: float
+    params: VesselParams,
+    state: Array,
+    load_from_b: Array,
+    load_to_b: Array,
+    water_w: Array,
+    attached: Array,
+    step_s: float,
 ) -> Array:
-    """Return the state (13,) one classical Runge-Kutta step later; loads are held over the step."""
-    k1 = state_rate(params, state, load_b, water_w, attached)
-    k2 = state_rate(params, state + 0.5 * step_s * k1, load_b, water_w, attached)
-    k3 = state_rate(params, state + 0.5 * step_s * k2, load_b, water_w, attached)
-    k4 = state_rate(params, state + step_s * k3, load_b, water_w, attached)
+    """Return the state (13 + r,) one classical Runge-Kutta step later; the load runs linearly over the step."""
+    inertia = carried_inertia(params, attached)
+    middle = 0.5 * (load_from_b + load_to_b)
+    k1 = state_rate(params, inertia, state, load_from_b, water_w, attached)
+    k2 = state_rate(params, inertia, state + 0.5 * step_s * k1, middle, water_w, attached)
+    k3 = state_rate(params, inertia, state + 0.5 * step_s * k2, middle, water_w, attached)
+    k4 = state_rate(params, inertia, state + step_s * k3, load_to_b, water_w, attached)
     new = state + (step_s / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
     new[3:7] /= np.sqrt(new[3] ** 2 + new[4] ** 2 + new[5] ** 2 + new[6] ** 2)
     return new
@@ -159,7 +202,7 @@ def point_motion(state: Array, nu_dot_b: Array, arm_b: Array) -> tuple[Array, Ar
 
     Parameters
     ----------
-    state : float64, shape (13,)
+    state : float64, shape (13 + r,)
     nu_dot_b : float64, shape (6,)
         Rates of the body-axes velocities at the CoG.
     arm_b : float64, shape (3,)
@@ -219,7 +262,7 @@ def carried_mean(
     params : VesselParams
     attached : float64, shape (10,)
         The body, see `carried_load`.
-    start, end : float64, shape (13,)
+    start, end : float64, shape (13 + r,)
         Ship states at both ends of the step.
     start_rate, end_rate : float64, shape (6,)
         ``nu_dot`` at both ends.
@@ -234,5 +277,5 @@ def carried_mean(
     for state, rate in ((start, start_rate), (end, end_rate)):
         acc_b = point_motion(state, rate, arm)[2]
         proper_b = acc_b + params.gravity * matrix_from_quat(state[3:7])[2]
-        total += 0.5 * carried_load(attached, state[10:], rate[3:], proper_b)
+        total += 0.5 * carried_load(attached, state[10:13], rate[3:], proper_b)
     return total

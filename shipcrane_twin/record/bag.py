@@ -18,14 +18,19 @@ COMPRESSION = {"zstd": CompressionType.ZSTD, "none": CompressionType.NONE}
 QOS = """- history: keep_last
   depth: 10
   reliability: reliable
-  durability: volatile
-  deadline: {sec: 9223372036, nsec: 854775807}
-  lifespan: {sec: 9223372036, nsec: 854775807}
+  durability: {durability}
+  deadline: {{sec: 9223372036, nsec: 854775807}}
+  lifespan: {{sec: 9223372036, nsec: 854775807}}
   liveliness: automatic
-  liveliness_lease_duration: {sec: 9223372036, nsec: 854775807}
+  liveliness_lease_duration: {{sec: 9223372036, nsec: 854775807}}
   avoid_ros_namespace_conventions: false
 """
-"""Of every topic, in the file and in metadata.yaml: readers match the two."""
+"""Of a topic, in the file and in metadata.yaml: readers match the two."""
+
+
+def offered_qos(topic: Topic) -> str:
+    """Return the quality of service with which a player should publish a topic, as rosbag2 writes it."""
+    return QOS.format(durability="transient_local" if topic.rate == "once" else "volatile")
 
 
 RECORDED = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
@@ -103,7 +108,7 @@ class BagWriter:
                 topic.name,
                 "cdr",
                 schemas[topic.type],
-                {"offered_qos_profiles": QOS, "topic_type_hash": self._hashes[topic.type]},
+                {"offered_qos_profiles": offered_qos(topic), "topic_type_hash": self._hashes[topic.type]},
             )
         return channels
 
@@ -143,7 +148,7 @@ class BagWriter:
                         "name": topic.name,
                         "type": topic.type,
                         "serialization_format": "cdr",
-                        "offered_qos_profiles": yaml.safe_load(QOS),
+                        "offered_qos_profiles": yaml.safe_load(offered_qos(topic)),
                         "type_description_hash": self._hashes[topic.type],
                     },
                     "message_count": self.counts[topic.name],

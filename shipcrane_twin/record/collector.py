@@ -27,8 +27,9 @@ class StepCollector:
     def __init__(self, topics: Iterable[Topic], step_ns: int, telemetry_every: int, write: Write) -> None:
         topics = list(topics)
         self._step_topics = [t.name for t in topics if t.rate == "step"]
-        self._all_topics = [t.name for t in topics if t.rate != "irregular"]
-        self._regular = set(self._all_topics)
+        self._all_topics = [t.name for t in topics if t.rate in ("step", "telemetry")]
+        self._first_topics = [t.name for t in topics if t.rate != "irregular"]
+        self._regular = set(self._first_topics)
         self._step_ns = step_ns
         self._telemetry_every = telemetry_every
         self._write = write
@@ -37,6 +38,8 @@ class StepCollector:
 
     def wanted(self, step: int) -> list[str]:
         """Return the topics of a step in the order in which they are written."""
+        if step == 0:
+            return self._first_topics
         return self._step_topics if step % self._telemetry_every else self._all_topics
 
     def add(self, topic: str, time_ns: int, message: bytes) -> None:
@@ -59,6 +62,6 @@ class StepCollector:
 
     def _flush(self, step: int) -> None:
         held = self._pending.pop(step)
-        for name in self._all_topics:
+        for name in self._first_topics:
             if name in held:
                 self._write(name, step * self._step_ns, held[name])

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 CLOCK = "rosgraph_msgs/msg/Clock"
 ODOMETRY = "nav_msgs/msg/Odometry"
 JOINT_STATE = "sensor_msgs/msg/JointState"
+CLOUD = "sensor_msgs/msg/PointCloud2"
 
 _POSE = ("px", "py", "pz", "qx", "qy", "qz", "qw")
 _TWIST = ("vx", "vy", "vz", "wx", "wy", "wz")
@@ -218,6 +219,29 @@ def _joint_block(message: Any) -> Block:
         frame_id=message.header.frame_id,
         names=names,
     )
+
+
+def decode_cloud(message: bytes) -> dict[str, NDArray[np.float64]]:
+    """Return the float64 columns (n,) of a serialized PointCloud2, by name.
+
+    Raises
+    ------
+    ValueError
+        If a column is of another type or the message ends too early.
+    """
+    cloud = _typestore().deserialize_cdr(message, CLOUD)
+    if cloud.is_bigendian or any(column.datatype != column.FLOAT64 for column in cloud.fields):
+        raise ValueError("a PointCloud2 with columns that are not little-endian float64")
+    layout = np.dtype(
+        {
+            "names": [column.name for column in cloud.fields],
+            "formats": ["<f8"] * len(cloud.fields),
+            "offsets": [column.offset for column in cloud.fields],
+            "itemsize": cloud.point_step,
+        }
+    )
+    rows = np.frombuffer(cloud.data.tobytes(), dtype=layout, count=cloud.width * cloud.height)
+    return {name: rows[name].astype(np.float64) for name in layout.names or ()}
 
 
 def merge_blocks(blocks: Sequence[Block], width: int) -> Block:

@@ -13,7 +13,8 @@ Column order of `Series.values` by type (`COLUMNS`), SI units, frames as in the 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -23,10 +24,12 @@ import yaml
 from numpy.typing import NDArray
 
 from shipcrane_twin.record.decode import (
+    CLOUD,
     COLUMNS,
     JOINT_STATE,
     Block,
     decode_block,
+    decode_cloud,
     decode_messages,
     merge_blocks,
 )
@@ -87,13 +90,17 @@ class Joints:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Signals:
-    """Everything a bag holds: `series` and `joints` by topic; types not decoded appear in `counts` only."""
+    """Everything a bag holds: `series`, `joints` and `clouds` by topic; types not decoded appear in `counts` only.
+
+    Of PointCloud2 the last message counts: its columns, float64 (n,), by name.
+    """
 
     path: Path
     types: Mapping[str, str]
     counts: Mapping[str, int]
     series: Mapping[str, Series]
     joints: Mapping[str, Joints]
+    clouds: Mapping[str, Mapping[str, NDArray[np.float64]]]
 
 
 @dataclass(slots=True)
@@ -105,6 +112,7 @@ class _Topic:
     count: int = 0
     blocks: list[Block] = field(default_factory=list)
     log_ns: list[NDArray[np.int64]] = field(default_factory=list)
+    cloud: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     def add(self, batch: Batch) -> None:
         if batch.msgtype != self.msgtype:
@@ -116,6 +124,14 @@ class _Topic:
         if batch.starts and (self.msgtype in COLUMNS or self.msgtype == JOINT_STATE):
             self.blocks.append(_decode(batch))
             self.log_ns.append(np.array(batch.log_ns, dtype=np.int64))
+        if batch.starts and self.msgtype == CLOUD:
+            self.cloud = _decode_last(batch)
+
+
+def _decode_last(batch: Batch) -> Mapping[str, NDArray[np.float64]]:
+    """Decode the last cloud of a batch."""
+    with _told(batch):
+        return decode_cloud(batch.data[batch.starts[-1] : batch.starts[-1] + batch.sizes[-1]].tobytes())
 
 
 def _decode(batch: Batch) -> Block:
@@ -127,8 +143,15 @@ def _decode(batch: Batch) -> Block:
         if block is not None:
             return block
     messages = [batch.data[a : a + n].tobytes() for a, n in zip(batch.starts, batch.sizes, strict=True)]
-    try:
+    with _told(batch):
         return decode_messages(batch.msgtype, messages)
+
+
+@contextmanager
+def _told(batch: Batch) -> Iterator[None]:
+    """Turn whatever a decoder raises into a BagError that names the place."""
+    try:
+        yield
     except Exception as error:
         raise BagError(
             f"{batch.where}: a message on {batch.topic} is not a valid {batch.msgtype} "
@@ -179,6 +202,7 @@ def read_signals(bag_dir: Path | str) -> Signals:
         counts={t.name: t.count for t in topics.values()},
         series=series,
         joints=joints,
+        clouds={topic.name: topic.cloud for topic in topics.values() if topic.msgtype == CLOUD},
     )
 
 

@@ -164,6 +164,8 @@ def find_gaps(
     periods_ms = {"step": macro_step_ms, "telemetry": telemetry_period_ms}
     gaps = []
     for topic in topics:
+        if topic.rate == "once" and (found := signals.counts.get(topic.name, 0)) != 1:
+            gaps.append(Gap(topic.name, 1, found, 0.0 if not found else None))
         if topic.rate not in periods_ms:
             continue
         due_ns = np.arange(0, round(end_s * 1e9) + 1, round(periods_ms[topic.rate] * 1e6), dtype=np.int64)

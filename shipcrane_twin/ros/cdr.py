@@ -11,12 +11,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcrane_twin.cosim.time import stamp_parts
-from shipcrane_twin.cosim.topics import CLOCK, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
+from shipcrane_twin.cosim.topics import CLOCK, CLOUD, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
 from shipcrane_twin.physics.arrays import Array
 
 ENCAPSULATION = b"\x00\x01\x00\x00"
 ORIGIN = 4
 """Where alignment counts from."""
+
+FLOAT64 = 8
+"""Of the constants of sensor_msgs/PointField."""
 
 
 class CdrError(ValueError):
@@ -50,13 +53,46 @@ class _Writer:
         return start
 
 
+def encode_cloud(topic: Topic, time_ns: int, values: Array) -> bytes:
+    """Return a serialized PointCloud2 of float64 columns.
+
+    Parameters
+    ----------
+    topic : Topic
+        With frame and names of the columns.
+    time_ns : int
+    values : float64, shape (n * columns,)
+        Row by row.
+    """
+    writer = _Writer()
+    writer.data += struct.pack("<iI", *stamp_parts(time_ns))
+    writer.string(topic.frame)
+    size = 8 * len(topic.fields)
+    points = values.size // len(topic.fields)
+    writer.count(1)  # height
+    writer.count(points)
+    writer.count(len(topic.fields))
+    for i, name in enumerate(topic.fields):
+        writer.string(name)
+        writer.count(8 * i)
+        writer.data += bytes([FLOAT64])
+        writer.count(1)
+    writer.data += b"\0"  # little endian
+    writer.count(size)
+    writer.count(size * points)
+    writer.count(size * points)
+    writer.data += values.astype("<f8").tobytes() + b"\1"  # all points are valid
+    return bytes(writer.data)
+
+
 class Template:
     """Serialized messages of one topic: everything fixed but stamp and numbers.
 
     Parameters
     ----------
     topic : Topic
-        Of one of the types of `cosim.topics`; not DiagnosticArray.
+        Of one of the types of `cosim.topics`; not DiagnosticArray. Those of a PointCloud2 are only written,
+        and seldom, so nothing of them is prepared.
     """
 
     def __init__(self, topic: Topic) -> None:
@@ -80,7 +116,7 @@ class Template:
             twist = writer.doubles(6)
             writer.doubles(36)
             blocks = [(pose, 7), (twist, 6)]
-        elif topic.type != CLOCK:
+        elif topic.type not in (CLOCK, CLOUD):
             blocks = [(writer.doubles(topic.width), topic.width)]
         self.topic = topic
         self._buffer = writer.data
@@ -91,6 +127,8 @@ class Template:
 
     def encode(self, time_ns: int, values: Array) -> bytes:
         """Return the serialized message with this stamp and these values (the topic's width)."""
+        if self.topic.type == CLOUD:
+            return encode_cloud(self.topic, time_ns, values)
         struct.pack_into("<iI", self._buffer, ORIGIN, *stamp_parts(time_ns))
         at = 0
         for view in self._views:

@@ -30,6 +30,14 @@ LOOP_QOS = QoSProfile(
     durability=DurabilityPolicy.VOLATILE,
 )
 
+LATCHED_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+"""Of what is published once: who comes late hears it still."""
+
 
 def message_class(type_name: str) -> type[Any]:
     """Return the Python class of ``package/msg/Name``."""

@@ -16,6 +16,7 @@ from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
 from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, published_by
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
 from shipcrane_twin.ros.links import (
+    LATCHED_QOS,
     LOOP_QOS,
     Inbox,
     LoopOwned,
@@ -84,7 +85,10 @@ class SubsystemNode:
         topics = published_by(name)
         self._templates = {topic.name: Template(topic) for topic in topics}
         self._publishers = {
-            topic.name: self.node.create_publisher(message_class(topic.type), topic.name, LOOP_QOS) for topic in topics
+            topic.name: self.node.create_publisher(
+                message_class(topic.type), topic.name, LATCHED_QOS if topic.rate == "once" else LOOP_QOS
+            )
+            for topic in topics
         }
         self._expected = step_listeners(run.recorded)
         self._executor = SingleThreadedExecutor()

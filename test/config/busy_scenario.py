@@ -15,6 +15,24 @@ MOVES = {
     "winch": {"velocity_m_s": 0.05},
 }
 
+SEA = [
+    {"spectrum": "regular", "direction_to_deg": 40.0, "height_m": 0.3, "period_s": 9.0},
+    {
+        "spectrum": "jonswap",
+        "direction_to_deg": 130.0,
+        "significant_wave_height_m": 1.0,
+        "peak_period_s": 6.0,
+        "peak_enhancement": 2.0,
+        "spreading_exponent": 8.0,
+    },
+    {
+        "spectrum": "torsethaugen",
+        "direction_to_deg": -60.0,
+        "significant_wave_height_m": 0.8,
+        "peak_period_s": 7.0,
+    },
+]
+
 
 def put(data, path, value):
     """Set one value in nested data, in place."""
@@ -35,11 +53,24 @@ def busy():
     data = plain(load_scenario("case2"))
     data["duration_s"] = 0.8
     data["environment"] = {
+        "water_depth_m": 30.0,
+        "waves": {
+            "systems": copy.deepcopy(SEA),
+            "ramp_s": 1.0,
+            "kurtosis_error": 0.05,
+            "first_order": True,
+            "slow_drift": True,
+        },
         "current_speed_m_s": 0.5,
         "current_direction_to_deg": 33.0,
+        "current_deviation_m_s": 0.1,
+        "current_time_constant_s": 50.0,
+        "current_profile": [[0.0, 1.0], [2.0, 0.8], [10.0, 0.5]],
         "wind_speed_m_s": 7.0,
         "wind_direction_to_deg": 71.0,
+        "wind_gusts": "froya",
     }
+    data["vessel"]["ballast"] = {"mode": "values", "heave_n": 1e3, "roll_n_m": 2e4, "pitch_n_m": 3e4}
     data["dp"]["enabled_at_s"] = 0.0
     data["dp"]["setpoint"] = {"north_m": 1.0, "east_m": -2.0, "heading_deg": 10.0}
     data["operations"] = [
@@ -47,7 +78,7 @@ def busy():
     ]
     data["events"] = [{"label": "drop", "at_s": 0.4, "event": "release_payload"}]
     for i in range(6):  # so that every pair of modes may be coupled by damping
-        data["vessel"]["hull"]["damping_frd"][i][i] += 1e4
+        data["vessel"]["hull"]["viscous_damping_frd"][i][i] += 1e4
     return data
 
 

@@ -71,9 +71,30 @@ OVERRIDES = {
         "payload.hook_mass_kg=800.0",
         "payload.hook_mass_kg is 800.0, expected no more than payload.mass_kg = 700, a part of it",
     ),
-    "asymmetric matrix": ("vessel.hull.damping_frd.0.1=1.0e+6", "vessel.hull.damping_frd is [[0.0, "),
-    "stiffness that nothing reads": ("vessel.hull.restoring_frd.0.0=1.0", "expected zeros outside heave, roll, pitch"),
-    "capsizing hull": ("vessel.hull.restoring_frd.3.3=0.0", "expected positive stiffness in heave, roll and pitch"),
+    "asymmetric matrix": ("vessel.hull.viscous_damping_frd.0.1=1.0e+6", "viscous_damping_frd is [[0.0, "),
+    "no such ballast": ("vessel.ballast.mode=water", "vessel.ballast.mode is 'water', expected 'none', 'level' or"),
+    "ballast that nothing reads": ("vessel.ballast.roll_n_m=5.0", "vessel.ballast.mode is 'none', expected 'values'"),
+    "no such spectrum": (
+        "environment.waves.systems=[{spectrum: pm, direction_to_deg: 0.0}]",
+        "environment.waves.systems[0].spectrum is 'pm', expected 'regular', 'jonswap', 'pierson_moskowitz', ",
+    ),
+    "keys of another spectrum": (
+        "environment.waves.systems=[{spectrum: regular, direction_to_deg: 0.0, peak_period_s: 8.0, height_m: 1.0}]",
+        "expected height_m, period_s with the spectrum regular",
+    ),
+    "spread regular wave": (
+        "environment.waves.systems=[{spectrum: regular, direction_to_deg: 0.0, period_s: 8.0, height_m: 1.0, "
+        "spreading_exponent: 4.0}]",
+        "expected none: a regular wave has one direction",
+    ),
+    "unit clash of waves": (
+        "environment.waves.systems=[{spectrum: regular, direction_to_rad: 0.0, period_s: 8.0, height_m: 1.0}]",
+        "unit clash: this setting is direction_to_deg",
+    ),
+    "depths out of order": (
+        "environment.current_profile=[[5.0, 1.0], [0.0, 0.5]]",
+        "expected two rows or more, depths rising",
+    ),
     "uneven directions": (
         "vessel.wind_areas.table.3.0=31.0",
         "expected directions from 0 to 180 degrees in equal steps in the first column",
@@ -114,7 +135,7 @@ def test_override_that_cannot_be_placed_is_explained(override, said):
 
 FILES = {
     "unknown key": (GOOD + "wire: {diametr_m: 0.1}\n", "wire.diametr_m is unknown; did you mean diameter_m?"),
-    "wrong type": (GOOD + "vessel: {mass_kg: heavy}\n", "vessel.mass_kg is 'heavy', expected a valid number"),
+    "wrong type": (GOOD + "vessel: {draught_m: heavy}\n", "vessel.draught_m is 'heavy', expected a valid number"),
     "number as text": (GOOD + "wire: {diameter_m: 5e5}\n", "wire.diameter_m is '5e5', expected a valid number; YAML"),
     "no speed": (
         GOOD + "operations:\n - {label: a, joint: boom, from_s: 1.0, to_s: 2.0}\n",

@@ -11,7 +11,7 @@ from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.cosim.coupling import CHAIN, FEEDBACK, INPUTS, SCHEMES
 from shipcrane_twin.cosim.inline import InlineRun
 from shipcrane_twin.cosim.participant import Participant, state_digest
-from shipcrane_twin.cosim.topics import BY_NAME, JOINTS, TOPICS, published_by
+from shipcrane_twin.cosim.topics import BY_NAME, CLOUD, JOINTS, TOPICS, published_by
 
 BUSY = [
     "duration_s=1.0",
@@ -93,9 +93,10 @@ def test_outputs_have_the_width_and_the_rate_of_the_topic_table():
     assert set(seen) == {topic.name for name in CHAIN for topic in published_by(name)}
     for name, messages in seen.items():
         topic = BY_NAME[name]
-        step_ns = SCENARIO.step_ns * (SCENARIO.telemetry_every if topic.rate == "telemetry" else 1)
-        assert [time_ns for time_ns, _ in messages] == list(range(0, 1_000_000_001, step_ns))
-        assert all(values.dtype == np.float64 and values.shape == (topic.width,) for _, values in messages)
+        every = {"step": 1, "telemetry": SCENARIO.telemetry_every, "once": SCENARIO.step_count + 1}[topic.rate]
+        assert [time_ns for time_ns, _ in messages] == list(range(0, 1_000_000_001, every * SCENARIO.step_ns))
+        if topic.type != CLOUD:
+            assert all(values.dtype == np.float64 and values.shape == (topic.width,) for _, values in messages)
         assert all(np.isfinite(values).all() for _, values in messages)
 
 

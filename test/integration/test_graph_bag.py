@@ -12,7 +12,7 @@ from shipcrane_twin.cosim.topics import BY_NAME, TOPICS
 pytestmark = needs_ros
 
 STEPS, STEP_NS = 1000, 20_000_000
-COUNTS = {"step": STEPS + 1, "telemetry": STEPS // 5 + 1}
+COUNTS = {"step": STEPS + 1, "telemetry": STEPS // 5 + 1, "once": 1}
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def test_every_message_is_logged_at_its_stamp(bag):
             times.setdefault(connection.topic, []).append(log_ns)
     for topic in TOPICS:
         if topic.rate in COUNTS:
-            every = STEP_NS * (1 if topic.rate == "step" else 5)
+            every = STEP_NS * {"step": 1, "telemetry": 5, "once": STEPS + 1}[topic.rate]
             assert times[topic.name] == list(range(0, STEPS * STEP_NS + 1, every))
 
 

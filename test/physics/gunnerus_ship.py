@@ -4,12 +4,16 @@ import numpy as np
 from palfinger import inertia_tensor
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.cosim.build import vessel_params
+from shipcrane_twin.cosim.build import hydro_database, vessel_params
+from shipcrane_twin.hydro.rao import natural_periods
 from shipcrane_twin.physics.frames import quat_from_euler
-from shipcrane_twin.physics.vessel import VesselParams
+from shipcrane_twin.physics.radiation import radiation_count
+from shipcrane_twin.physics.vessel import VesselParams, carried_inertia, state_rate, vessel_step
 
 SCENARIO = load_scenario("case2")
 SHIP = vessel_params(SCENARIO)
+DATA = hydro_database(SCENARIO)
+DATA_PERIODS = natural_periods(DATA, SHIP.rigid_mass)
 STILL_WATER = np.zeros(3)
 NO_LOAD = np.zeros(6)
 NOTHING_ATTACHED = np.zeros(10)
@@ -21,16 +25,27 @@ def ideal_ship(added_mass, restoring) -> VesselParams:
         added_mass=added_mass,
         restoring=restoring,
         damping=np.zeros((6, 6)),
-        quadratic=np.zeros(2),
+        roll_quadratic=0.0,
+        strips=np.zeros((1, 2)),
         current_scale=np.zeros(3),
     )
-    return SHIP._replace(hull=hull)
+    return SHIP._replace(hull=hull, radiation=SHIP.radiation._replace(c=np.zeros_like(SHIP.radiation.c)))
 
 
 def state_at(place=(0.0, 0.0, 0.0), euler=(0.0, 0.0, 0.0), nu=(0.0,) * 6, ship=SHIP):
     """State with the CoG `place` away from where it floats at rest."""
     position = np.array([0.0, 0.0, ship.hull.design_height]) + place
-    return np.concatenate((position, quat_from_euler(*euler), nu))
+    return np.concatenate((position, quat_from_euler(*euler), nu, np.zeros(radiation_count(ship.radiation))))
+
+
+def rate_of(ship, state, load_b, water_w, attached):
+    """Rate of the state with the inertia that belongs to the attached body."""
+    return state_rate(ship, carried_inertia(ship, attached), state, load_b, water_w, attached)
+
+
+def held_step(ship, state, load_b, water_w, attached, step_s):
+    """One step under a constant load."""
+    return vessel_step(ship, state, load_b, load_b, water_w, attached, step_s)
 
 
 def body_of_points(masses, points):

@@ -2,11 +2,17 @@
 
 import numpy as np
 import pytest
-from gunnerus_ship import SHIP
+from gunnerus_ship import DATA_PERIODS, SHIP
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from shipcrane_twin.physics.hull import added_mass_bias, current_load, damping_load, restoring_load
+from shipcrane_twin.physics.hull import (
+    added_mass_bias,
+    current_load,
+    damping_load,
+    restoring_load,
+    turning_drag,
+)
 
 HULL = SHIP.hull
 compiled = settings(deadline=None)
@@ -47,13 +53,47 @@ def test_linear_and_quadratic_damping_only_take_power(turn, heave):
     assert nu @ damping_load(HULL, nu) <= 0.0
 
 
-@pytest.mark.parametrize("roll_rate", [0.2, -0.2])
-@pytest.mark.parametrize("yaw_rate", [0.1, -0.1])
-def test_damping_is_linear_with_a_squared_part_on_top_in_roll_and_yaw(roll_rate, yaw_rate):
-    rates = np.array([0.0, 0.0, 0.0, roll_rate, 0.0, yaw_rate])
+@pytest.mark.parametrize("rate", [0.2, -0.2])
+def test_roll_damping_is_linear_with_a_squared_part_on_top(rate):
+    rates = np.array([0.0, 0.0, 0.0, rate, 0.0, 0.0])
     expected = -HULL.damping @ rates
-    expected[[3, 5]] -= HULL.quadratic * [np.sign(roll_rate) * 0.2**2, np.sign(yaw_rate) * 0.1**2]
+    expected[3] -= HULL.roll_quadratic * rate * abs(rate)
     np.testing.assert_allclose(damping_load(HULL, rates), expected)
+
+
+def test_linear_roll_damping_is_the_viscous_share_of_critical_and_friction():
+    """2 zeta sqrt((I44 + A44) C44) at the natural frequency, and B44 of the ship's file."""
+    omega = 2.0 * np.pi / DATA_PERIODS["roll"]
+    critical = 2.0 * HULL.restoring[3, 3] / omega
+    assert HULL.damping[3, 3] == pytest.approx(0.06 * critical + 5892.9, rel=1e-3)
+
+
+@compiled
+@given(sway=speeds, rate=st.floats(-0.3, 0.3))
+def test_turning_drag_is_the_integral_of_the_sections_drag_less_that_of_straight_sway(sway, rate):
+    length, draught, aft = 33.9, 2.6, -15.516
+    x = np.linspace(aft, aft + length, 20001)
+    speed = sway + x * rate
+    drag = -0.5 * 1025.0 * 0.66 * draught * (speed * np.abs(speed) - sway * np.abs(sway))
+    expected = np.trapezoid(drag, x), np.trapezoid(drag * x, x)
+    scale = np.abs(drag).max() * length + 1e-9
+    force, moment = turning_drag(HULL, sway, rate)
+    assert force == pytest.approx(expected[0], abs=5e-3 * scale)
+    assert moment == pytest.approx(expected[1], abs=5e-3 * scale * length)
+
+
+@compiled
+@given(rate=st.floats(0.01, 0.3))
+def test_turning_on_the_spot_is_braked_either_way(rate):
+    assert turning_drag(HULL, 0.0, rate)[1] < 0.0 < turning_drag(HULL, 0.0, -rate)[1]
+
+
+def test_ballast_adds_its_load_and_no_other():
+    loaded = HULL._replace(ballast=np.array([1e4, 2e4, 3e4]))
+    force, moment = restoring_load(HULL, HULL.design_height, 0.0, 0.0)
+    force_with, moment_with = restoring_load(loaded, HULL.design_height, 0.0, 0.0)
+    assert force_with - force == pytest.approx(1e4)
+    np.testing.assert_allclose(moment_with - moment, [2e4, 3e4, 0.0])
 
 
 @compiled

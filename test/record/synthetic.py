@@ -11,7 +11,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
 
-from shipcrane_twin.cosim.topics import ACCEL, CLOCK, INERTIA, JOINTS, ODOMETRY, POSE, TOPICS, TWIST, WRENCH
+from shipcrane_twin.cosim.topics import ACCEL, CLOCK, CLOUD, INERTIA, JOINTS, ODOMETRY, POSE, TOPICS, TWIST, WRENCH
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 HOT_MS, TELEMETRY_MS = 20, 100
@@ -90,6 +90,26 @@ def joint_state(time_ns, names, position=(), velocity=(), effort=()):
     )
 
 
+def cloud(time_ns, numbers, names):
+    """Return one point per row of columns (n, len(names)), or one point."""
+    rows = np.reshape(numbers, (-1, len(names))).astype("<f8")
+    columns = [
+        make("sensor_msgs/msg/PointField", name=name, offset=8 * i, datatype=8, count=1) for i, name in enumerate(names)
+    ]
+    return make(
+        "sensor_msgs/msg/PointCloud2",
+        header=header(time_ns),
+        height=1,
+        width=len(rows),
+        fields=columns,
+        is_bigendian=False,
+        point_step=8 * len(names),
+        row_step=rows.nbytes,
+        data=np.frombuffer(rows.tobytes(), dtype=np.uint8),
+        is_dense=True,
+    )
+
+
 def builder(topic):
     """Return the function (time_ns, numbers) -> message for a row of the topic table."""
     if topic.type == JOINTS:
@@ -101,6 +121,7 @@ def builder(topic):
         return build
     return {
         CLOCK: clock,
+        CLOUD: partial(cloud, names=topic.fields),
         ODOMETRY: partial(odometry, child=topic.child_frame),
         POSE: pose_stamped,
         INERTIA: inertia_stamped,
@@ -198,8 +219,8 @@ class Lift:
         for topic in TOPICS:
             if topic.rate == "irregular":
                 continue
-            times = hot if topic.rate == "step" else slow
-            width = 0 if topic.type == CLOCK else topic.width
+            times = {"step": hot, "telemetry": slow, "once": hot[:1]}[topic.rate]
+            width = 0 if topic.type == CLOCK else len(topic.fields) if topic.type == CLOUD else topic.width
             rows = signals.get(topic.name, np.zeros((len(times), width)))
             build = builder(topic)
             result[topic.name] = [(int(t), build(int(t), row)) for t, row in zip(times, rows, strict=True)]

@@ -7,7 +7,7 @@ import yaml
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 from rosbags.highlevel import AnyReader
-from synthetic import STORE, TELEMETRY_MS, Lift, clock, joint_state, make, odometry, write_bag
+from synthetic import STORE, TELEMETRY_MS, Lift, clock, cloud, joint_state, make, odometry, write_bag
 
 from shipcrane_twin.record.read import COLUMNS, BagError, read_signals
 
@@ -42,7 +42,7 @@ def test_every_message_equals_the_one_of_an_independent_reader(bag):
             message = reader.deserialize(raw, connection.msgtype)
             expected.setdefault(connection.topic, []).append((log_ns, message))
     assert {name: len(rows) for name, rows in expected.items()} == dict(signals.counts)
-    assert signals.series.keys() | signals.joints.keys() == expected.keys()
+    assert signals.series.keys() | signals.joints.keys() | signals.clouds.keys() == expected.keys()
     for name, series in signals.series.items():
         stamp = attrgetter("clock" if name == "/clock" else "header.stamp")
         stamps = [(stamp(m).sec * SECOND + stamp(m).nanosec) for _, m in expected[name]]
@@ -72,6 +72,21 @@ def test_columns_carry_the_numbers_their_names_say(tmp_path):
     assert series.child_frame_id == "ship"
     assert series.stamp_ns[0] == late
     assert series.values.flags.writeable is False
+
+
+def test_of_a_cloud_the_last_message_counts_by_columns(tmp_path):
+    rows = np.arange(12.0).reshape(6, 2)
+    messages = [(0, cloud(0, rows[:2], ("amplitude", "omega"))), (SECOND, cloud(SECOND, rows, ("amplitude", "omega")))]
+    found = read_signals(write_bag(tmp_path / "bag", {"/sea": messages})).clouds["/sea"]
+    assert list(found) == ["amplitude", "omega"]
+    np.testing.assert_array_equal(np.column_stack(list(found.values())), rows)
+
+
+def test_a_cloud_of_other_numbers_is_an_error(tmp_path):
+    message = cloud(0, np.ones((1, 2)), ("x", "y"))
+    message.fields[0].datatype = 7  # float32
+    with pytest.raises(BagError, match="not little-endian float64"):
+        read_signals(write_bag(tmp_path / "bag", {"/sea": [(0, message)]}))
 
 
 def test_changing_strings_joints_and_unknown_types_are_read_too(tmp_path):

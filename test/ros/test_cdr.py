@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from shipcrane_twin.cosim.topics import CLOCK, DIAGNOSTICS, JOINTS, ODOMETRY, TOPICS, Topic
+from shipcrane_twin.cosim.topics import CLOCK, CLOUD, DIAGNOSTICS, JOINTS, ODOMETRY, TOPICS, Topic
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities, read_stamp
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -26,6 +26,10 @@ def numbers_of(message, topic):
         return np.array(flat(message.pose.pose) + flat(message.twist.twist))
     if topic.type == CLOCK:
         return np.empty(0)
+    if topic.type == CLOUD:
+        assert [column.name for column in message.fields] == list(topic.fields)
+        assert message.row_step == message.point_step * message.width == len(message.data)
+        return message.data.view("<f8")
     (body,) = (name for name in message.__dataclass_fields__ if name not in ("header", "child_frame_id", "__msgtype__"))
     return np.array(flat(getattr(message, body)))
 
@@ -36,7 +40,8 @@ def stamp_of(message):
 
 
 def values_for(topic):
-    return np.empty(0) if topic.type == CLOCK else np.random.default_rng(3).normal(size=topic.width)
+    width = {CLOCK: 0, CLOUD: 7 * len(topic.fields)}.get(topic.type)
+    return np.random.default_rng(3).normal(size=topic.width if width is None else width)
 
 
 @pytest.mark.parametrize("topic", TEMPLATED, ids=lambda t: t.name)
@@ -65,17 +70,17 @@ def test_rclpy_understands_the_template_and_the_template_rclpy(topic):
     assert stamp_of(message) == TIME_NS
     theirs = serialization.serialize_message(message)  # may differ in padding, which they leave as it was
     assert serialization.deserialize_message(theirs, kind) == message
-    if topic.type not in (CLOCK, JOINTS):
+    if topic.type not in (CLOCK, CLOUD, JOINTS):
         np.testing.assert_array_equal(Template(topic).decode(theirs), values)
 
 
-@pytest.mark.parametrize("topic", [t for t in TEMPLATED if t.type != CLOCK], ids=lambda t: t.name)
+@pytest.mark.parametrize("topic", [t for t in TEMPLATED if t.type not in (CLOCK, CLOUD)], ids=lambda t: t.name)
 def test_decode_returns_what_encode_got(topic):
     template, values = Template(topic), values_for(topic)
     np.testing.assert_array_equal(template.decode(template.encode(TIME_NS, values)), values)
 
 
-@pytest.mark.parametrize("topic", [t for t in TEMPLATED if t.type not in (CLOCK, JOINTS)], ids=lambda t: t.name)
+@pytest.mark.parametrize("topic", [t for t in TEMPLATED if t.type not in (CLOCK, CLOUD, JOINTS)], ids=lambda t: t.name)
 @pytest.mark.parametrize("frame", ["", "x", "a/much/longer/frame_name"])
 def test_decode_reads_other_peoples_frame_names(topic, frame):
     other = Topic(
@@ -83,6 +88,12 @@ def test_decode_reads_other_peoples_frame_names(topic, frame):
     )
     values = values_for(topic)
     np.testing.assert_array_equal(Template(topic).decode(Template(other).encode(0, values)), values)
+
+
+def test_a_sea_without_waves_is_a_cloud_without_points():
+    topic = next(t for t in TOPICS if t.type == CLOUD)
+    message = STORE.deserialize_cdr(Template(topic).encode(0, np.empty(0)), CLOUD)
+    assert (message.height, message.width, len(message.data)) == (1, 0, 0)
 
 
 def test_a_message_cut_short_is_an_error():

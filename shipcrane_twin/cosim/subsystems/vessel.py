@@ -30,7 +30,8 @@ class Vessel:
     name = "vessel"
 
     def __init__(self, scenario: Scenario) -> None:
-        self._params = build.vessel_params(scenario)
+        rest = at_rest(scenario)
+        self._params = rest.params
         self._thrusters = build.thruster_params(scenario)
         self._dp_params = build.dp_params(scenario)
         self._carries = SCHEMES[scenario.coupling].carries_inertia
@@ -42,7 +43,6 @@ class Vessel:
         point = scenario.dp.setpoint
         self._setpoint = np.array([point.east_m, point.north_m, yaw_from_heading(point.heading_deg)])
 
-        rest = at_rest(scenario)
         count = len(scenario.vessel.thrusters)
         self._memory = vessel_at_rest(self._params, rest.vessel, rest.inertia * self._carries, count)
         self._command = np.zeros((count, 2))
@@ -61,7 +61,7 @@ class Vessel:
             self._thrusters,
             self._memory,
             self._command,
-            inputs["/environment/wind_wrench"],
+            inputs["/environment/wave_wrench"] + inputs["/environment/wind_wrench"],
             inputs["/crane/base_wrench"],
             inputs["/crane/base_inertia"] * self._carries,
             inputs["/environment/current"][:3],
@@ -88,7 +88,8 @@ class Vessel:
         if k % self._telemetry_every == 0:
             east, north, yaw = self._setpoint
             surge, sway, turn = self._dp_load
-            forward, port = self._memory[THRUST::2], self._memory[THRUST + 1 :: 2]
+            thrust = self._memory[THRUST : THRUST + self._command.size].reshape(self._command.shape)
+            forward, port = thrust.T
             out["/vessel/pose"] = odom[:7].copy()
             out["/dp/setpoint"] = np.concatenate(([east, north, 0.0], quat_from_euler(0.0, 0.0, yaw)))
             out["/dp/wrench"] = np.array([surge, sway, 0.0, 0.0, 0.0, turn])

@@ -1,0 +1,68 @@
+"""Memory of the water: the radiation part of Cummins's equation as linear second-order sections.
+
+Cummins (1962) writes the load of the waves that a moving hull makes as ``-A_inf nu_dot`` and a convolution
+of the past velocities. The convolution is the output of a linear system (Perez and Fossen 2009): for each of
+the two blocks (surge, heave, pitch) and (sway, roll, yaw), every velocity drives p sections with poles
+common to the block, and every load reads all of them.
+"""
+
+from typing import NamedTuple
+
+from numba import njit
+
+from shipcrane_twin.physics.arrays import Array
+
+
+class RadiationParams(NamedTuple):
+    """Sections and how they are read, about the CoG, FLU.
+
+    Attributes
+    ----------
+    a : float64, shape (2, p, 2, 2)
+        Sections of each block [1/s].
+    b : float64, shape (2, p, 2)
+        Input of a velocity to a section.
+    c : float64, shape (2, 3, 3, p, 2)
+        Load on mode i from the sections that mode j drives.
+    """
+
+    a: Array
+    b: Array
+    c: Array
+
+
+@njit(cache=True)
+def radiation_count(params: RadiationParams) -> int:
+    """Return how many states the memory has."""
+    return 12 * params.b.shape[1]
+
+
+@njit(cache=True)
+def radiation_step(params: RadiationParams, memory: Array, nu_rel_b: Array, rate: Array, load: Array) -> None:
+    """Write the memory's rate and take the load off the hull's load.
+
+    Parameters
+    ----------
+    params : RadiationParams
+    memory : float64, shape (12 p,)
+        States by block, driving mode, section.
+    nu_rel_b : float64, shape (6,)
+        Velocity relative to the water, body axes. A constant one gives no load.
+    rate : float64, shape (12 p,)
+        Overwritten.
+    load : float64, shape (6,)
+        The memory's load is added.
+    """
+    a, b, c = params.a, params.b, params.c
+    sections = b.shape[1]
+    at = 0
+    for block in range(2):
+        for j in range(3):
+            velocity = nu_rel_b[block + 2 * j]
+            for k in range(sections):
+                first, second = memory[at], memory[at + 1]
+                rate[at] = a[block, k, 0, 0] * first + a[block, k, 0, 1] * second + b[block, k, 0] * velocity
+                rate[at + 1] = a[block, k, 1, 0] * first + a[block, k, 1, 1] * second + b[block, k, 1] * velocity
+                for i in range(3):
+                    load[block + 2 * i] -= c[block, i, j, k, 0] * first + c[block, i, j, k, 1] * second
+                at += 2
