@@ -160,7 +160,7 @@ def make_waves(
         )
     columns = [np.ascontiguousarray(column, dtype=np.float64) for column in (amplitude, omega, direction, phase)]
     if not all(column.shape == columns[0].shape and np.isfinite(column).all() for column in columns):
-        raise ValueError("waves: amplitudes, frequencies, directions and phases must be finite and as many as each other")
+        raise ValueError("waves: amplitudes, frequencies, directions and phases must be finite and equally many")
     if not (columns[1] >= SLOWEST).all():
         raise ValueError(f"waves: a component's frequency is below {SLOWEST:g} rad/s; no wind or swell is that slow")
     number = wave_numbers(columns[1], gravity, depth)
@@ -183,9 +183,7 @@ def significant_height(waves: Waves) -> float:
     return float(4.0 * np.sqrt(0.5 * np.sum(waves.amplitude**2)))
 
 
-def irregular_components(
-    system: Irregular, count: int, rng: np.random.Generator
-) -> tuple[Array, Array, Array, Array]:
+def irregular_components(system: Irregular, count: int, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
     """Return amplitudes, frequencies, directions and phases (count,) of one system."""
     drawn = rng.random((count, 4))
     place = np.arange(count)

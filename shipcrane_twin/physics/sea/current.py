@@ -56,10 +56,10 @@ def realise_current(
 
     Notes
     -----
-    Each horizontal component obeys ``v' = -v / T + noise`` (Fossen 2021, section 10.3, there for speed and angle; components
-    have no singular direction in slack water). Exact discretisation ``v_k+1 = e v_k + s sqrt(1 - e^2) n_k`` with
-    ``e = exp(-step / T)``, and a stationary start. Linear interpolation between the times takes
-    about ``step / (3 T)`` of the variance.
+    Each horizontal component obeys ``v' = -v / T + noise`` (Fossen 2021, chapter 10, there for speed and angle;
+    components have no singular direction in slack water). Exact discretisation
+    ``v_k+1 = e v_k + s sqrt(1 - e^2) n_k`` with ``e = exp(-step / T)``, and a stationary start. Linear interpolation
+    between the times takes about ``step / (3 T)`` of the variance.
     """
     if not (0.0 <= mean_speed < np.inf and 0.0 <= deviation < np.inf and np.isfinite(direction)):
         raise ValueError(
@@ -70,14 +70,14 @@ def realise_current(
         raise ValueError(f"current: time constant {time_constant:g} s, expected at least 5 steps of {step:g} s")
     if not 0.0 <= duration < np.inf:
         raise ValueError(f"current: the duration is {duration:g} s, expected 0 or more")
-    mean = mean_speed * np.round([np.cos(direction), np.sin(direction)], 12)
+    mean = np.array([round(mean_speed * float(f(direction)), 12) for f in (np.cos, np.sin)])
     if deviation == 0.0:
         return Current(step=float(step), velocity=mean[None, :])
     count = int(np.ceil(duration / step)) + 1
     noise = deviation * rng.standard_normal((count, 2))
     # Rounded, so that the exponential of every mathematical library leads to the same bits.
     kept = float(np.round(np.exp(-step / time_constant), 12))
-    velocity = np.empty((count, 2))
+    velocity: Array = np.empty((count, 2))
     velocity[0] = noise[0]
     renewed = np.sqrt(1.0 - kept * kept) * noise
     for k in range(1, count):
@@ -121,9 +121,10 @@ def mean_factor(depth: Array, factor: Array, draught: float) -> float:
     first order in the shear.
     """
     depth, factor = np.asarray(depth, float), np.asarray(factor, float)
-    if depth.ndim != 1 or depth.shape != factor.shape or len(depth) < 1 or depth[0] != 0.0 or (np.diff(depth) <= 0.0).any():
+    columns = depth.ndim == 1 and depth.shape == factor.shape and len(depth) > 0
+    if not (columns and depth[0] == 0.0 and (np.diff(depth) > 0.0).all()):
         raise ValueError("current profile: depths must rise from 0, with one factor each [m]")
     if not (np.isfinite(factor).all() and 0.0 < draught < np.inf):
-        raise ValueError(f"current profile: draught {draught:g} m, factors {factor}; expected finite factors, a positive draught")
+        raise ValueError(f"current profile: draught {draught:g} m, factors {factor}; expected finite numbers")
     inside = np.append(depth[depth < draught], draught)
     return float(np.trapezoid(np.interp(inside, depth, factor), inside) / draught)

@@ -52,7 +52,7 @@ def froya(frequency: Array, mean_speed: float, height: float = HEIGHT) -> Array:
 
     Notes
     -----
-    Andersen and Lovseth (2006), measured on Froya; NORSOK N-003, DNV-RP-C205 (2021) section 2.3.5.
+    Andersen and Lovseth (2006), measured on Froya; NORSOK N-003, DNV-RP-C205 section 2.3.
     """
     check(mean_speed, height)
     if mean_speed == 0.0:
@@ -81,7 +81,7 @@ def harris(frequency: Array, mean_speed: float, drag: float = 0.003, scale: floa
     """
     check(mean_speed, scale)
     if not drag >= 0.0:
-        raise ValueError(f"Harris spectrum: the drag coefficient is {drag:g}, expected 0 or more, over the sea about 0.003")
+        raise ValueError(f"Harris spectrum: the drag coefficient is {drag:g}, expected 0 or more (sea: 0.003)")
     if mean_speed == 0.0:
         return np.zeros(len(frequency))
     reduced = scale * frequency / mean_speed
@@ -93,7 +93,7 @@ def froya_profile(mean_speed: float, height: float, averaging: float = AVERAGING
 
     Notes
     -----
-    NORSOK N-003, DNV-RP-C205 (2021) section 2.3.2: logarithmic in height and, up to one hour, in time.
+    NORSOK N-003, DNV-RP-C205 section 2.3: logarithmic in height and, up to one hour, in time.
     """
     check(mean_speed, height)
     if not 1.0 <= averaging <= AVERAGING:
@@ -121,11 +121,12 @@ def realise_gusts(frequency: Array, density: Array, rng: np.random.Generator, co
 
     Notes
     -----
-    One frequency in each of ``count`` bins of equal energy and a random phase, as in `components.realise`, rounded likewise.
+    One frequency in each of ``count`` bins of equal energy and a random phase, rounded, as in `components.realise`.
     """
     if not 20 <= count <= 2000:
         raise ValueError(f"gusts: {count} components, expected 20 to 2000")
-    if len(frequency) < 2 or len(frequency) != len(density) or not (frequency[0] > 0.0 and (np.diff(frequency) > 0.0).all()):
+    columns = len(frequency) == len(density) > 1
+    if not (columns and frequency[0] > 0.0 and (np.diff(frequency) > 0.0).all()):
         raise ValueError("gusts: frequencies must be positive and rising, with one density each, at least 2 [Hz]")
     if not (np.isfinite(density).all() and np.min(density) >= 0.0):
         raise ValueError("gusts: densities must be finite and not negative [m2/s2 per Hz]")
@@ -151,6 +152,6 @@ def gust(gusts: Gusts, t: float) -> float:
 def check(mean_speed: float, length: float) -> None:
     """Refuse speeds and lengths that no wind has."""
     if not 0.0 <= mean_speed < np.inf:
-        raise ValueError(f"wind: the mean speed is {mean_speed:g} m/s, expected 0 or more; the direction says where it goes")
+        raise ValueError(f"wind: the mean speed is {mean_speed:g} m/s, expected 0 or more")
     if not 0.0 < length < np.inf:
         raise ValueError(f"wind: the height or length scale is {length:g} m, expected above 0")

@@ -10,13 +10,13 @@ from shipcrane_twin.physics.sea.trig import sincos
 
 @njit(cache=True)
 def ramp_factor(ramp: float, t: float) -> float:
-    """Return the share that the sea has reached at time t [s], 0 at the start and 1 from ``ramp`` [s] on.
+    """Return the share that the sea has reached at time t [s]: 0 at the start, 1 from ``ramp`` [s] on; without ramp 1.
 
     Notes
     -----
     A polynomial of fifth degree: rate and acceleration are zero at both ends, so nothing jerks.
     """
-    if t >= ramp:
+    if ramp <= 0.0 or t >= ramp:
         return 1.0
     if t <= 0.0:
         return 0.0

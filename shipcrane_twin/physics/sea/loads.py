@@ -18,6 +18,10 @@ COLUMNS = 15
 """Real and imaginary parts of six first-order loads, three drift loads."""
 
 
+MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+"""Signs of a load (6,) when the wave comes from the other side."""
+
+
 class WaveLoadParams(NamedTuple):
     """Transfer functions of a ship at the frequencies of a realised sea.
 
@@ -68,10 +72,9 @@ def wave_load_params(
 
     Notes
     -----
-    Real and imaginary parts are interpolated, by the cubic of Catmull and Rom over frequency and direction (`local_cubic`),
-    and never the phase, which jumps. The hull is the same on both sides, so the load of a wave from
-    the other side has surge, heave and pitch alike and sway, roll and yaw reversed; that also continues the tables
-    beyond 0 and pi. Drift is interpolated linearly, so that it keeps its sign.
+    Real and imaginary parts are interpolated over frequency and direction by `local_cubic`, never the phase,
+    which jumps. The hull is the same on both sides, so the load of a wave from the other side has surge, heave and
+    pitch alike and sway, roll and yaw reversed. Drift is linear over frequency, where it peaks at resonances.
 
     Below the lowest frequency all values are held. Above the highest one the first-order load falls with
     ``w^-2``, as the pressure on a hull that is large against the wave does, and the drift is held: short waves are
@@ -80,16 +83,12 @@ def wave_load_params(
     check_tables(omega, direction, excitation, drift)
     own = np.clip(waves.omega, omega[0], omega[-1])
     beyond = np.minimum(1.0, omega[-1] / waves.omega) ** 2
-    signs = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
-    rows = np.linspace(0.0, np.pi, ROWS)
-    angle = np.concatenate([-direction[2:0:-1], direction, 2.0 * np.pi - direction[-2:-4:-1]])
-    table = np.empty((len(waves.omega), ROWS, COLUMNS))
-    for start, part in ((0, excitation.real), (6, excitation.imag)):
-        at_own = local_cubic(omega, part, own) * (beyond * waves.amplitude)[:, None, None]
-        around = np.concatenate([at_own[:, 2:0:-1] * signs, at_own, at_own[:, -2:-4:-1] * signs], axis=1)
-        table[:, :, start : start + 6] = np.swapaxes(local_cubic(angle, np.swapaxes(around, 0, 1), rows), 0, 1)
-    at_own = linear(omega, drift, own) * (waves.amplitude**2)[:, None, None]
-    table[:, :, 12:] = np.swapaxes(linear(direction, np.swapaxes(at_own, 0, 1), rows), 0, 1)
+    tables = (
+        local_cubic(omega, excitation.real, own) * (beyond * waves.amplitude)[:, None, None],
+        local_cubic(omega, excitation.imag, own) * (beyond * waves.amplitude)[:, None, None],
+        linear(omega, drift, own) * (waves.amplitude**2)[:, None, None],
+    )
+    table = np.concatenate([around_the_ship(direction, values) for values in tables], axis=2)
     return WaveLoadParams(table=table, first_order=float(first_order), drift=float(slow_drift))
 
 
@@ -102,9 +101,7 @@ def outside_shares(waves: Waves, omega: Array) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def wave_load(
-    params: WaveLoadParams, waves: Waves, t: float, x: float, y: float, yaw: float
-) -> tuple[Array, Array]:
+def wave_load(params: WaveLoadParams, waves: Waves, t: float, x: float, y: float, yaw: float) -> tuple[Array, Array]:
     """Return first-order (6,) and drift load (3,) of the waves on a ship [N, N m].
 
     Parameters
@@ -130,9 +127,10 @@ def wave_load(
     -----
     First order: ``Re sum a X(w, d - yaw) e^{i phi}`` with phi the phase of the component at the ship's place.
     Drift: Newman's (1974) approximation ``T_ij = sgn sqrt(T_i T_j)`` in the O(n) form
-    ``|sum a sqrt(T+) e^{i phi}|^2 - |sum a sqrt(T-) e^{i phi}|^2``, with T+ and T- the positive and negative parts of the
-    mean drift. The squared envelope has no sum frequencies, its mean is the sum of the mean drifts, and one component gives
-    ``a^2 T``. It holds for horizontal motions with long natural periods. Between the rows of the table values are linear.
+    ``|sum a sqrt(T+) e^{i phi}|^2 - |sum a sqrt(T-) e^{i phi}|^2``, with T+ and T- the positive and negative parts
+    of the mean drift. The squared envelope has no sum frequencies, its mean is the sum of the mean drifts, and one
+    component gives ``a^2 T``. It holds for horizontal motions with long natural periods.
+    Values are linear between the rows of the table.
     First order carries the factor of the growing sea, drift its square.
     """
     n = waves.amplitude.shape[0]
@@ -172,14 +170,28 @@ def wave_load(
     return first, drift
 
 
+def around_the_ship(direction: Array, values: Array) -> Array:
+    """Return loads (n, ROWS, k) at the rows of the table from those (n, m, k) at directions (m,).
+
+    Notes
+    -----
+    k is 6, or 3 for surge, sway and yaw. Beyond 0 and pi the table goes on with its mirror image.
+    """
+    signs = MIRROR if values.shape[2] == 6 else MIRROR[[0, 1, 5]]
+    angle = np.concatenate([-direction[2:0:-1], direction, 2.0 * np.pi - direction[-2:-4:-1]])
+    around = np.concatenate([values[:, 2:0:-1] * signs, values, values[:, -2:-4:-1] * signs], axis=1)
+    rows = np.linspace(0.0, np.pi, ROWS)
+    return np.swapaxes(local_cubic(angle, np.swapaxes(around, 0, 1), rows), 0, 1)
+
+
 def local_cubic(place: Array, values: Array, wanted: Array) -> Array:
     """Return values (k, ...) at places (k,) within a table of rising places (n,), values (n, ...).
 
     Notes
     -----
-    Cubic Hermite polynomials; the slopes are those of the parabola through three neighbours
-    (Catmull and Rom 1974, for uneven spacing). The error falls with the third power of the spacing; a
-    disturbed value affects its neighbours only; no solver is involved whose rounding could differ between machines.
+    Cubic Hermite polynomials; the slopes are those of the parabola through three neighbours (Bessel's). The error
+    falls with the third power of the spacing or faster, a disturbed value affects its neighbours only, and no solver is
+    involved whose rounding could differ between machines.
     """
     shape = (-1,) + (1,) * (values.ndim - 1)
     width = np.diff(place).reshape(shape)
@@ -198,7 +210,7 @@ def local_cubic(place: Array, values: Array, wanted: Array) -> Array:
 
 
 def linear(place: Array, values: Array, wanted: Array) -> Array:
-    """Return values (k, ...) at places (k,) within a table of rising places (n,), values (n, ...), on straight lines."""
+    """Return values (k, ...) at places (k,) of a table, places (n,) and values (n, ...), on straight lines."""
     low = np.clip(np.searchsorted(place, wanted, side="right") - 1, 0, len(place) - 2)
     share = ((wanted - place[low]) / (place[low + 1] - place[low])).reshape((-1,) + (1,) * (values.ndim - 1))
     return (1.0 - share) * values[low] + share * values[low + 1]
@@ -214,7 +226,8 @@ def check_tables(omega: Array, direction: Array, excitation: NDArray[np.complex1
         )
     if n < 3 or not (omega[0] > 0.0 and (np.diff(omega) > 0.0).all()):
         raise ValueError("wave loads: frequencies must be positive and rising, at least 3 [rad/s]")
-    if m < 4 or not ((np.diff(direction) > 0.0).all() and abs(direction[0]) < 1e-6 and abs(direction[-1] - np.pi) < 1e-6):
+    covered = m >= 4 and abs(direction[0]) < 1e-6 and abs(direction[-1] - np.pi) < 1e-6
+    if not (covered and (np.diff(direction) > 0.0).all()):
         raise ValueError("wave loads: directions must rise from 0 to pi, at least 4 [rad]")
     if not (np.isfinite(excitation).all() and np.isfinite(drift).all()):
         raise ValueError("wave loads: the transfer functions hold numbers that are not finite")

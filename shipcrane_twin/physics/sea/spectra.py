@@ -37,7 +37,7 @@ def jonswap(omega: Array, height: float, period: float, gamma: float) -> Array:
 
     Notes
     -----
-    DNV-RP-C205 (2021) section 3.5.5 with sigma 0.07 and 0.09, but normalised by quadrature to ``m0 = Hs^2 / 16``
+    DNV-RP-C205 section 3.5 with sigma 0.07 and 0.09, but normalised by quadrature to ``m0 = Hs^2 / 16``
     instead of its approximation ``1 - 0.287 ln gamma``, which errs by up to 1 % of the energy.
     """
     check(omega, height, period)
@@ -54,7 +54,7 @@ def pierson_moskowitz(omega: Array, height: float, period: float) -> Array:
 
     Notes
     -----
-    The two-parameter form of DNV-RP-C205 (2021) section 3.5.5, also named after Bretschneider and ISSC:
+    The two-parameter form of DNV-RP-C205 section 3.5, also named after Bretschneider and ISSC:
     ``S = 5/16 Hs^2 wp^4 w^-5 exp(-5/4 (wp/w)^4)``.
     """
     check(omega, height, period)
@@ -81,7 +81,7 @@ def torsethaugen(omega: Array, height: float, period: float, gravity: float) -> 
 
     Notes
     -----
-    The simplified form (Torsethaugen and Haver 2004; DNV-RP-C205 (2021) section 3.5.6), made for the
+    The simplified form (Torsethaugen and Haver 2004; DNV-RP-C205 appendix A), made for the
     Norwegian shelf with a fetch of 370 km. Each peak is normalised by quadrature to its share of the energy.
     """
     check(omega, height, period)

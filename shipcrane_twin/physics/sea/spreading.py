@@ -18,7 +18,7 @@ def spreading_density(angle: Array, exponent: float) -> Array:
 
     Notes
     -----
-    Longuet-Higgins, Cartwright and Smith (1963); DNV-RP-C205 (2021) section 3.5.8. Its other form, ``cos^n`` of the
+    Longuet-Higgins, Cartwright and Smith (1963); DNV-RP-C205 section 3.5. Its other form, ``cos^n`` of the
     whole angle, is about ``s = 2 n + 1``.
     """
     check_exponent(exponent)
