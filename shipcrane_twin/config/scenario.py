@@ -215,8 +215,8 @@ def weather_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         if system.spectrum == "regular" and system.spreading_exponent is not None:
             found.append(([*here, "spreading_exponent"], "expected none: a regular wave has one direction"))
     depths = [row[0] for row in scenario.environment.current_profile]
-    if depths != sorted(set(depths)) or len(depths) == 1:
-        found.append((["environment", "current_profile"], "expected two rows or more, depths rising"))
+    if depths and (depths != sorted(set(depths)) or depths[0] != 0.0):
+        found.append((["environment", "current_profile"], "expected depths that rise from 0, the surface"))
     ballast = scenario.vessel.ballast
     if ballast.mode != "values" and (ballast.heave_n or ballast.roll_n_m or ballast.pitch_n_m):
         found.append((["vessel", "ballast", "mode"], "expected 'values', because values are given"))

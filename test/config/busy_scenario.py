@@ -57,7 +57,7 @@ def busy():
         "waves": {
             "systems": copy.deepcopy(SEA),
             "ramp_s": 1.0,
-            "kurtosis_error": 0.05,
+            "kurtosis_error": 0.02,
             "first_order": True,
             "slow_drift": True,
         },
@@ -124,8 +124,11 @@ def flow_along_row(path, data):
     """Turn wind or current to the direction of the table row that a path leads to."""
     angle = look(data, [*path[:-1], 0])
     data = copy.deepcopy(data)
+    data["environment"]["waves"]["systems"] = []  # the ship stays on its heading
     if "wind_areas" in path:
         data["environment"]["wind_direction_to_deg"] = angle + 180.0
+        data["environment"]["wind_gusts"] = "none"
     else:
+        data["environment"]["current_deviation_m_s"] = 0.0
         data["environment"]["current_direction_to_deg"] = angle
     return data

@@ -17,6 +17,7 @@ WITHOUT_EFFECT_ON_PHYSICS = {
     "lockstep.silence_timeout_s": "wall time only",
     "lockstep.speed": "wall time only",
     "recording.chunk_kib": "layout of the bag",
+    "environment.current_profile.0.0": "the surface, refused elsewhere",
     "dp.settled_after_s": "from when the summary judges position",
     "vessel.thrusters.2.position_m.1": "a tunnel thruster pushes along this lever",
 }
@@ -122,7 +123,7 @@ def test_kind_of_thruster_changes_the_run():
         (("environment", "waves", "first_order"), False),
         (("environment", "waves", "slow_drift"), False),
         (("environment", "waves", "systems", 2, "spectrum"), "pierson_moskowitz"),
-        (("vessel", "ballast", "mode"), "level"),
+        (("vessel", "ballast"), {"mode": "level", "heave_n": 0.0, "roll_n_m": 0.0, "pitch_n_m": 0.0}),
     ],
     ids=lambda part: ".".join(map(str, part)) if isinstance(part, tuple) else str(part),
 )

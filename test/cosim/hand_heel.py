@@ -1,14 +1,20 @@
 """Heel, trim and sinkage of the ship under crane and load, by hand: weights, levers, hydrostatic stiffness.
 
-Written from the published tables with plain numpy; uses nothing of the package.
+Written from the published tables and the database's hydrostatic stiffness with plain numpy; uses no code of the package.
 """
 
+from pathlib import Path
+
 import numpy as np
+from scipy.io import netcdf_file
 
 GRAVITY = 9.80665
 COG = np.array([15.516, 0.0, 3.624])
 BASE = np.array([5.516, -3.0, 6.624])
-C33, C35, C44, C55 = 2732094.5, 4763841.5, 7989546.5, 205328770.0  # axes x forward, y starboard, z down
+
+with netcdf_file(Path(__file__).parents[2] / "config" / "vessels" / "gunnerus" / "hydro.nc", mmap=False) as file:
+    STIFFNESS = np.array(file.variables["restoring"][:])
+C33, C35, C44, C55 = STIFFNESS[[2, 2, 3, 4], [2, 4, 3, 4]]
 
 # modified (Craig) D-H: a, alpha, d, theta of base to tip for joints 0; then which of d and theta the joint moves
 DH = [(0.0, 0.0, 2.0, 0.0), (-0.38, 90.0, 0.0, 0.0), (1.85, 0.0, -0.6, 0.0), (0.0, 90.0, 0.0, 0.0)]

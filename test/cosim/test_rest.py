@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hand_heel import GRAVITY, heel_trim_sinkage, weights_on_ship
+from hand_heel import C33, C44, GRAVITY, heel_trim_sinkage, weights_on_ship
 
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.cosim.initial import at_rest
@@ -49,7 +49,7 @@ def test_the_ship_heels_to_the_side_of_the_crane_and_goes_down():
     heel, _, sinkage = heel_trim_sinkage(*POSTURES["abeam to starboard"])
     assert 1.0 < np.rad2deg(heel) < 4.0
     masses, _ = weights_on_ship(*POSTURES["abeam to starboard"])
-    assert sinkage == pytest.approx(GRAVITY * masses.sum() / 2732094.5, abs=0.02)
+    assert sinkage == pytest.approx(GRAVITY * masses.sum() / C33, abs=0.02)
 
 
 def test_calm_start_stays_at_the_heel_of_the_hand_calculation(calm_start, measured):
@@ -94,3 +94,23 @@ def test_start_follows_heading_and_place():
 def test_a_crane_too_heavy_for_the_ship_finds_no_rest():
     with pytest.raises(ValueError, match="no equilibrium below 40 degrees of heel"):
         at_rest(load_scenario("case2", ["crane.links.1.mass_kg=5.0e+5"]))
+
+
+def test_ballast_levels_the_ship_at_the_start():
+    rest = at_rest(load_scenario("case2", ["vessel.ballast.mode=level"]))
+    np.testing.assert_allclose(euler_from_matrix(matrix_from_quat(rest.vessel[3:7]))[:2], 0.0, atol=1e-12)
+    assert rest.vessel[2] == pytest.approx(3.624 - 2.6, abs=1e-12)
+
+
+def test_given_ballast_heels_as_its_moment_over_the_stiffness():
+    plain = at_rest(load_scenario("case2", ["payload.mass_kg=50.0"]))
+    moment = 2.0e4
+    heeled = at_rest(load_scenario("case2", ["payload.mass_kg=50.0", f"vessel.ballast={{mode: values, roll_n_m: {moment}}}"]))
+    rolls = [euler_from_matrix(matrix_from_quat(rest.vessel[3:7]))[0] for rest in (plain, heeled)]
+    assert rolls[1] - rolls[0] == pytest.approx(moment / C44, rel=0.02)  # the crane's height takes a little stiffness
+
+
+def test_leveled_ship_stays_level():
+    run = InlineRun(load_scenario("case2", [*CALM, "vessel.ballast.mode=level"]))
+    rolls = [attitude_deg(run.latest["/vessel/odom"])[0] for _ in run.steps()]
+    assert np.abs(rolls).max() < 1e-3
