@@ -18,6 +18,8 @@ def test_froya_at_ten_metres_and_ten_metres_per_second_is_its_formula_without_fa
 
 def test_froya_scales_with_speed_and_height_as_published():
     assert froya(np.array([0.0]), 30.0, 40.0)[0] == pytest.approx(320.0 * 9.0 * 4.0**0.45)
+    higher = froya(np.array([0.01 / 4.0 ** (2.0 / 3.0)]), 10.0, 40.0)[0]
+    assert higher == pytest.approx(4.0**0.45 * froya(np.array([0.01]), 10.0, 10.0)[0])
     # f S / U0^2 depends on 172 f (z/10)^(2/3) (U0/10)^(-3/4) alone
     slow, fast = froya(np.array([0.02]), 10.0, 10.0)[0], froya(np.array([0.02 * 2.0**0.75]), 20.0, 10.0)[0]
     assert fast == pytest.approx(4.0 * slow)
