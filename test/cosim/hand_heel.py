@@ -1,6 +1,6 @@
 """Heel, trim and sinkage of the ship under crane and load, by hand: weights, levers, hydrostatic stiffness.
 
-Written from the published tables and the database's hydrostatic stiffness with plain numpy; uses no code of the package.
+Written from the published tables and the database's hydrostatic stiffness; uses no code of the package.
 """
 
 from pathlib import Path

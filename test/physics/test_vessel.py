@@ -193,7 +193,8 @@ def oscillating_modes():
     """Eigenvalue and shape (position, rate, memory) of the slowest oscillation in which each mode leads."""
     hull, water = SHIP.hull, SHIP.radiation
     sections = water.b.shape[1]
-    reading, memory, driving = np.zeros((6, 12 * sections)), np.zeros((12 * sections,) * 2), np.zeros((12 * sections, 6))
+    count = 12 * sections
+    reading, memory, driving = np.zeros((6, count)), np.zeros((count, count)), np.zeros((count, 6))
     at = 0
     for block, j, k in np.ndindex(2, 3, sections):
         pair = slice(at, at + 2)
