@@ -13,8 +13,8 @@ from shipcrane_twin.hydro.rao import coupled_periods, natural_periods, raos
 from shipcrane_twin.physics.arrays import Array
 
 MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-LOADS = (1, 2, 3, 4)
-"""Sway, heave, roll, pitch: the loads that strip theory and three-dimensional theory should agree on."""
+JUDGED = (1, 2, 3, 4)
+"""Sway, heave, roll, pitch: the loads on which strip theory and three-dimensional theory should agree."""
 
 PERIODS = ((6.0, 0.25), (8.0, 0.15), (10.0, 0.15), (12.0, 0.15), (15.0, 0.15), (20.0, 0.15))
 """Wave periods [s] at which loads are compared, and the bars."""
@@ -89,11 +89,14 @@ def compare_with_veres(ours: HydroDatabase, veres: HydroDatabase, mass6: Array) 
         Loads: the largest difference of amplitudes over all directions, as a share of the largest amplitude over all
         directions, of that load at that period. With the phase, the same of complex numbers, without a bar.
         Added mass: the largest difference over periods of 5 to 12 s as a share of VERES's value at that period.
-        What strip theory cannot give (damping, A55, A66) stands without a bar.
+        Motions of heave and pitch, and what strip theory cannot give (F1, F6, damping, A55, A66), have no bar.
     """
     if np.abs(ours.cog - veres.cog).max() > 0.01:
         raise ConfigError(f"CoG at {ours.cog} and {veres.cog} m: move one database with `moved` before the comparison")
-    rows = load_rows(ours, veres)
+    own_mass = mass6.copy()
+    own_mass[:3, :3] = np.eye(3) * ours.mass
+    rows = table_rows("F", (ours, veres), (ours.excitation, veres.excitation), tuple(range(6)), JUDGED)
+    rows += table_rows("RAO", (ours, veres), (raos(ours, own_mass), raos(veres, mass6)), (2, 4), ())
     omega = 2.0 * np.pi / ADDED_MASS_PERIODS
     for table, letter in (("added_mass", "A"), ("damping", "B")):
         own, theirs = (at(data, getattr(data, table), omega).real for data in (ours, veres))
@@ -103,8 +106,6 @@ def compare_with_veres(ours: HydroDatabase, veres: HydroDatabase, mass6: Array) 
             note = f"ratio to VERES {ratio.min():.2f} to {ratio.max():.2f}"
             what = f"{letter}{mode + 1}{mode + 1} against VERES, periods of 5 to 12 s"
             rows.append(Row(what, float(np.abs(ratio - 1.0).max()), bar, "", note))
-    own_mass = mass6.copy()
-    own_mass[:3, :3] = np.eye(3) * ours.mass
     for name, bar in PERIOD_BARS.items():
         period, reference = natural_periods(ours, own_mass)[name], natural_periods(veres, mass6)[name]
         note = f"{period:.2f} s, VERES {reference:.2f} s, coupled {coupled_periods(ours, own_mass)[name]:.2f} s"
@@ -112,20 +113,28 @@ def compare_with_veres(ours: HydroDatabase, veres: HydroDatabase, mass6: Array) 
     return rows
 
 
-def load_rows(ours: HydroDatabase, veres: HydroDatabase) -> list[Row]:
-    """Compare wave loads, by amplitude (with bars) and with phase (without)."""
+def table_rows(
+    letter: str,
+    ships: tuple[HydroDatabase, HydroDatabase],
+    tables: tuple[Complex, Complex],
+    modes: tuple[int, ...],
+    judged: tuple[int, ...],
+) -> list[Row]:
+    """Compare loads or motions (n, m, 6) of two ships by amplitude, with bars for some, and with phase, without."""
+    ours, veres = ships
     rows = []
     for period, bar in PERIODS:
         omega = 2.0 * np.pi / period
-        theirs = at(veres, veres.excitation, omega)
-        own = over_directions(at(ours, ours.excitation, omega), ours.direction, veres.direction)
-        for mode in LOADS:
+        theirs = at(veres, tables[1], omega)
+        own = over_directions(at(ours, tables[0], omega), ours.direction, veres.direction)
+        for mode in modes:
             scale = np.abs(theirs[..., mode]).max()
             amplitude = np.abs(np.abs(own[..., mode]) - np.abs(theirs[..., mode]))
             whole = np.abs(own[..., mode] - theirs[..., mode])
             worst = np.rad2deg(veres.direction[int(amplitude[0].argmax())])
-            what = f"F{mode + 1} ({MODES[mode]}) against VERES at {period:g} s"
-            rows.append(Row(what, float(amplitude.max() / scale), bar, "", f"worst at direction {worst:.0f} deg"))
+            what = f"{letter}{mode + 1} ({MODES[mode]}) against VERES at {period:g} s"
+            note = f"worst at direction {worst:.0f} deg"
+            rows.append(Row(what, float(amplitude.max() / scale), bar if mode in judged else None, "", note))
             rows.append(Row(f"{what}, with phase", float(whole.max() / scale), None))
     return rows
 

@@ -125,7 +125,9 @@ def finish(axes: Axes, title: str, y_label: str, x_label: str, *, to: float | No
         return
     axes.set_xlim(0.0, to)
     top = axes.secondary_xaxis("top")
-    marks = [period for period in PERIOD_MARKS if 2.0 * np.pi / period <= to and (to < 3.0 or period not in (8, 30))]
+    marks = [
+        period for period in PERIOD_MARKS if 2.0 * np.pi / period <= to and (to < 3.0 or period not in (8, 15, 30))
+    ]
     top.set_xticks([2.0 * np.pi / period for period in marks], [f"{period}" for period in marks])
     top.tick_params(labelsize=SMALL - 1, colors="#707070", length=2)
     top.set_xlabel("period [s]", fontsize=SMALL - 1, color="#707070", labelpad=2)
@@ -135,6 +137,14 @@ def finish(axes: Axes, title: str, y_label: str, x_label: str, *, to: float | No
 def last(ships: Ships) -> float:
     """Return where frequency axes end [rad/s]."""
     return float(ships.data.omega[-1])
+
+
+def line_and_dots(
+    axes: Axes, table: tuple[Array, Array], fitted: tuple[Array, Array], style: str, colour: str, label: str
+) -> None:
+    """Draw what the database holds as a line and what its state-space model makes of it as dots, in thousands."""
+    axes.plot(table[0], table[1] / 1e3, style, color=colour, linewidth=1.5, label=label)
+    axes.plot(fitted[0], fitted[1] / 1e3, ".", color=colour, markersize=3.5, label="its state space")
 
 
 def radiation(ships: Ships, title: str, letter: str, pairs: list[tuple[int, int]]) -> Figure:
@@ -189,22 +199,13 @@ def impulse(fit: RadiationFit, time: Array) -> Array:
 
 def memory(ships: Ships) -> Figure:
     """Draw retardation functions from the damping (lines) and of the state-space model (dots)."""
-    figure, all_axes = grid("Retardation functions K(t)", ships)
+    figure, all_axes = grid("Retardation functions K(t), damping beyond the table taken to fall as w⁻³", ships)
     time = np.linspace(0.0, 15.0, 301)
     for (data, style), colour in zip(ships.each(), COLOURS, strict=False):
         integral, model = retardation(data.omega, data.damping, time), impulse(data.fit, time)
         for mode, axes in enumerate(all_axes):
-            axes.plot(
-                time,
-                integral[:, mode, mode] / 1e3,
-                style,
-                color=colour,
-                linewidth=1.5,
-                label=f"{data.name}: from damping",
-            )
-            axes.plot(
-                time[::4], model[::4, mode, mode] / 1e3, ".", color=colour, markersize=3.5, label="its state space"
-            )
+            table, fitted = (time, integral[:, mode, mode]), (time[::4], model[::4, mode, mode])
+            line_and_dots(axes, table, fitted, style, colour, f"{data.name}: from damping")
     for mode, axes in enumerate(all_axes):
         unit = "kN/m" if mode < 3 else "kN m"
         finish(axes, f"K{mode + 1}{mode + 1}  {MODES[mode]}", f"[{unit}]", "time [s]")

@@ -130,6 +130,8 @@ def memory_terms(text: Text) -> dict[tuple[int, int], tuple[Complex, Complex]]:
     terms: dict[tuple[int, int], tuple[Complex, Complex]] = {}
     while line < len(text.lines) and text.lines[line].strip() and not text.lines[line].lstrip().startswith("%"):
         i, j = (int(value) for value in text.numbers(line, 2))
+        if not (1 <= i <= 6 and 1 <= j <= 6):
+            raise ConfigError(f"{text.path}:{line + 1}: entry {i},{j}, expected 1 to 6; the file is of another version")
         count = int(text.numbers(line + 1, 1)[0])
         rows = np.array([text.numbers(line + 2 + k, 4) for k in range(count)]).reshape(count, 4)
         line += 2 + count
