@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.hydro.database import Complex, HydroDatabase
-from shipcrane_twin.hydro.rao import coupled_periods, natural_periods, raos
+from shipcrane_twin.hydro.rao import coupled_periods, natural_periods, raos, roll_damping, usual_mass
 from shipcrane_twin.physics.arrays import Array
 
 MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
@@ -146,7 +146,7 @@ def largest(found: Complex, reference: Complex) -> float:
 
 def validate_import(
     data: HydroDatabase,
-    mass6: Array,
+    mass6: Array | None = None,
     motions: Complex | None = None,
     extra_damping: Array | None = None,
 ) -> list[Row]:
@@ -155,12 +155,12 @@ def validate_import(
     Parameters
     ----------
     data : HydroDatabase
-    mass6 : float64, shape (6, 6)
-        Rigid-body mass about the CoG.
+    mass6 : float64, shape (6, 6), optional
+        Rigid-body mass about the CoG, that of `motions` where they are given; else `rao.usual_mass` will do.
     motions : complex128, shape (n, m, 6), optional
         The code's own motions per amplitude, in the database's convention.
     extra_damping : float64, shape (6, 6), optional
-        Linear damping that the code used; give some for roll, whose resonance has little of its own.
+        Linear damping beside radiation; 5 % of critical in roll if absent.
 
     Returns
     -------
@@ -168,7 +168,18 @@ def validate_import(
         Against the file's own motions: heave and pitch with a bar, by amplitude, as a share of the largest over all
         frequencies and directions; the others hang on viscous roll damping, which depends on wave height. From
         state space against the tables: all modes. Long waves and the Haskind relation, which show wrong units.
+
+    Raises
+    ------
+    ConfigError
+        If motions come without a mass matrix.
     """
+    if mass6 is None:
+        if motions is not None:
+            raise ConfigError(f"{data.name}: motions without the mass matrix they were made with; give mass6")
+        mass6 = usual_mass(data)
+    if extra_damping is None:
+        extra_damping = roll_damping(data, mass6)
     direct = raos(data, mass6, extra_damping)
     rows = []
     if motions is not None:

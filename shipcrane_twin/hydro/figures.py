@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from shipcrane_twin.hydro.compare import MODES
 from shipcrane_twin.hydro.database import LATERAL, LONGITUDINAL, Complex, HydroDatabase, RadiationFit
 from shipcrane_twin.hydro.memory import retardation
-from shipcrane_twin.hydro.rao import natural_periods, raos
+from shipcrane_twin.hydro.rao import natural_periods, raos, roll_damping, usual_mass
 from shipcrane_twin.physics.arrays import Array
 
 if TYPE_CHECKING:
@@ -33,8 +34,8 @@ class Ships(NamedTuple):
 
     data: HydroDatabase
     other: HydroDatabase | None
-    mass6: Array | None
-    extra_damping: Array | None
+    mass6: Array
+    extra_damping: Array
 
     def each(self) -> Iterator[tuple[HydroDatabase, str]]:
         """Yield database and line style: solid, then dashed."""
@@ -50,7 +51,7 @@ def draw(
     other: HydroDatabase | None = None,
     mass6: Array | None = None,
     extra_damping: Array | None = None,
-    mesh: tuple[Array, Array] | None = None,
+    mesh: tuple[Array, NDArray[np.integer[Any]]] | None = None,
 ) -> list[Path]:
     """Draw a database into PNG files.
 
@@ -63,9 +64,9 @@ def draw(
     other : HydroDatabase, optional
         Dashed lines.
     mass6 : float64, shape (6, 6), optional
-        Rigid-body mass about the CoG; motions and natural periods are drawn with it.
+        Rigid-body mass about the CoG, for motions and natural periods; by usual radii of gyration if absent.
     extra_damping : float64, shape (6, 6), optional
-        Linear damping beside radiation, for the motions.
+        Linear damping beside radiation, for the motions; 5 % of critical in roll if absent.
     mesh : tuple of float64, shape (k, 3), and int, shape (j, 4), optional
         Points and panels of the hull, one side or both.
 
@@ -74,7 +75,8 @@ def draw(
     list of Path
         In the order in which one reads them.
     """
-    ships = Ships(data, other, mass6, extra_damping)
+    mass = usual_mass(data) if mass6 is None else mass6
+    ships = Ships(data, other, mass, roll_damping(data, mass) if extra_damping is None else extra_damping)
     makers: dict[str, Callable[[Ships], Figure]] = {
         "added_mass": added_mass,
         "damping": damping,
@@ -82,9 +84,8 @@ def draw(
         "memory": memory,
         "excitation": excitation,
         "drift": drift,
+        "motions": motions,
     }
-    if mass6 is not None:
-        makers["motions"] = motions
     figures = {} if mesh is None else {"hull": hull(*mesh)}
     figures |= {name: make(ships) for name, make in makers.items()}
     folder.mkdir(parents=True, exist_ok=True)
@@ -257,7 +258,6 @@ def drift(ships: Ships) -> Figure:
 def motions(ships: Ships) -> Figure:
     """Draw amplitudes of the motions, with natural periods marked."""
     figure, all_axes = grid("Motions of the CoG per wave amplitude", ships)
-    assert ships.mass6 is not None
     for data, style in ships.each():
         table = np.abs(raos(data, ships.mass6, ships.extra_damping))
         for mode, axes in enumerate(all_axes):
@@ -280,7 +280,7 @@ def motions(ships: Ships) -> Figure:
     return figure
 
 
-def hull(points: Array, panels: Array) -> Figure:
+def hull(points: Array, panels: NDArray[np.integer[Any]]) -> Figure:
     """Draw the panels from the side, from above, from the bow and the stern."""
     from matplotlib.collections import PolyCollection
 

@@ -16,6 +16,27 @@ def mass_matrix(mass: float, ixx: float, iyy: float, izz: float) -> Array:
     return np.diag([mass, mass, mass, ixx, iyy, izz])
 
 
+def usual_mass(data: HydroDatabase) -> Array:
+    """Return a rigid-body mass matrix (6, 6) from usual radii of gyration, where nothing better is known.
+
+    Notes
+    -----
+    Roll 0.35 breadths, pitch and yaw 0.25 lengths (Faltinsen 1990, section 3.2, gives 0.35 B and 0.25 L for ships). The
+    breadth is that of a waterplane that fills 0.82 of its rectangle.
+    """
+    breadth = data.restoring[2, 2] / (data.water_density * data.gravity * 0.82 * data.length)
+    return mass_matrix(
+        data.mass, *(data.mass * np.array([0.35 * breadth, 0.25 * data.length, 0.25 * data.length]) ** 2)
+    )
+
+
+def roll_damping(data: HydroDatabase, mass6: Array, share: float = 0.05) -> Array:
+    """Return a linear roll damping (6, 6) beside radiation, a share of critical."""
+    out = np.zeros((6, 6))
+    out[3, 3] = 2.0 * share * np.sqrt(data.restoring[3, 3] * (mass6[3, 3] + data.added_mass_inf[3, 3]))
+    return out
+
+
 def raos(
     data: HydroDatabase,
     mass6: Array,

@@ -94,6 +94,13 @@ def test_haskind_relation_of_a_point_that_radiates_alike():
     assert rows["B33 against the wave loads (Haskind)"].value < 1e-3
 
 
+def test_motions_need_the_mass_they_were_made_with():
+    data = a_ship()
+    with pytest.raises(ConfigError, match=r"box: motions without the mass matrix .*; give mass6"):
+        validate_import(data, motions=data.excitation)
+    assert validate_import(data)
+
+
 def test_a_row_without_a_bar_holds():
     assert Row("any", 9.0, None).holds
 
@@ -118,5 +125,5 @@ def test_the_reference_ship_through_its_state_space_model(tmp_path_factory, meas
 
 def test_without_a_fit_the_state_space_rows_miss(tmp_path_factory):
     folder = shipx_folder(tmp_path_factory)
-    rows = by_name(validate_import(import_veres(folder, fit=without_fit), read_extras(folder).mass))
+    rows = by_name(validate_import(import_veres(folder, fit=without_fit)))
     assert not rows["heave RAO from state space against the tables"].holds

@@ -4,7 +4,6 @@ import matplotlib.image
 import numpy as np
 from imported_ships import a_ship, mass_of
 
-from shipcrane_twin.hydro import figures
 from shipcrane_twin.hydro.database import RadiationFit
 from shipcrane_twin.hydro.figures import draw, impulse
 
@@ -24,13 +23,6 @@ def test_every_figure_is_drawn_with_ink_in_it(tmp_path):
         picture = matplotlib.image.imread(path)[..., :3]
         assert picture.shape[1] == 1430
         assert 0.01 < (picture.min(axis=2) < 0.9).mean() < 0.4, path
-
-
-def test_motions_need_a_mass_and_the_hull_a_mesh(tmp_path, monkeypatch):
-    monkeypatch.setattr(figures, "DPI", 20)
-    names = [path.stem for path in draw(a_ship(), tmp_path)]
-    assert "motions" not in names
-    assert "hull" not in names
 
 
 def test_impulse_response_is_the_memory_of_the_model():

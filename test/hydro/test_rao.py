@@ -5,7 +5,7 @@ import pytest
 from imported_ships import OMEGA, a_ship, mass_of
 
 from shipcrane_twin.config.settings import ConfigError
-from shipcrane_twin.hydro.rao import coupled_periods, mass_matrix, natural_periods, raos
+from shipcrane_twin.hydro.rao import coupled_periods, mass_matrix, natural_periods, raos, roll_damping, usual_mass
 
 
 def single(data):
@@ -94,3 +94,14 @@ def test_an_unstable_ship_is_refused():
 
 def test_a_mass_matrix_is_diagonal_about_the_cog():
     np.testing.assert_array_equal(np.diag(mass_matrix(1.0, 2.0, 3.0, 4.0)), [1.0, 1.0, 1.0, 2.0, 3.0, 4.0])
+
+
+def test_usual_radii_and_roll_damping():
+    data = a_ship()
+    mass = usual_mass(data)
+    radii = np.sqrt(np.diag(mass)[3:] / data.mass)
+    np.testing.assert_allclose(radii, [0.35 * 10.0 / 0.82, 10.0, 10.0])
+    critical = 2.0 * np.sqrt(data.restoring[3, 3] * (mass[3, 3] + data.added_mass_inf[3, 3]))
+    extra = roll_damping(data, mass, 0.07)
+    assert extra[3, 3] == pytest.approx(0.07 * critical)
+    assert np.count_nonzero(extra) == 1
