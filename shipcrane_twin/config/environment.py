@@ -34,7 +34,7 @@ class WaveSystemConfig:
     significant_wave_height_m: Positive | None = None
     peak_period_s: Positive | None = None
     peak_enhancement: Annotated[Number, Ge(1), Le(10)] | None = None
-    spreading_exponent: Annotated[Number, Gt(0), Le(200)] | None = None
+    spreading_exponent: Annotated[Number, Ge(0), Le(200)] | None = None
     spectrum_file: Text | None = None
 
 

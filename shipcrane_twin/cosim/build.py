@@ -28,7 +28,7 @@ from shipcrane_twin.physics.thrusters import ThrusterParams
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.wind import WindParams
 
-CROSS_FLOW_STRIPS = 20
+CROSS_FLOW_STRIPS = 12
 DATABASE_TOLERANCE = 1e-3
 """Relative difference at which a scenario's particulars are not those of the hull's database."""
 

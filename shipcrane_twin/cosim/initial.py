@@ -114,10 +114,10 @@ def unbalanced(
     """Return what is left of vertical force and of the moments about roll and pitch axes (3,)."""
     height, roll, pitch = place
     rot = matrix_from_quat(quat_from_euler(roll, pitch, yaw))
-    up, moment = restoring_load(params.hull, height, roll, pitch)
+    up, *moments = restoring_load(params.hull, height, roll, pitch)
     arm = params.crane_base - params.cog
     weight_b = rotate_to_body(rot, np.array([0.0, 0.0, -inertia[0] * params.gravity]))
     force_b = rotate_to_body(rot, force_w)
-    moment = moment + cross(arm + inertia[1:4], weight_b) + cross(arm + tip_b, force_b)
+    moment = np.array(moments) + cross(arm + inertia[1:4], weight_b) + cross(arm + tip_b, force_b)
     pitch_axis = np.array([0.0, np.cos(roll), -np.sin(roll)])
     return np.array([up - inertia[0] * params.gravity + force_w[2], moment[0], moment @ pitch_axis])

@@ -53,7 +53,7 @@ def wave_system(scenario: Scenario, system: WaveSystemConfig) -> Irregular | Reg
     direction = yaw_from_heading(system.direction_to_deg)
     if system.spectrum == "regular":
         return Regular(height=system.height_m or 0.0, period=system.period_s or 0.0, direction=direction)
-    spreading = system.spreading_exponent or math.inf
+    spreading = math.inf if system.spreading_exponent is None else system.spreading_exponent
     if system.spectrum == "table":
         omega, density = read_spectrum(system.spectrum_file or "")
         return Irregular(omega=omega, density=density, direction=direction, spreading=spreading)

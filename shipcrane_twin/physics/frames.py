@@ -94,12 +94,15 @@ def euler_from_matrix(rot: Array) -> tuple[float, float, float]:
 
 
 @njit(cache=True)
-def quat_rate(quat: Array, omega_b: Array) -> Array:
-    """Return dq/dt (4,) of a quaternion (x, y, z, w) for the angular velocity (3,) in body axes [rad/s]."""
+def quat_rate(quat: Array, omega_b: Array) -> tuple[float, float, float, float]:
+    """Return dq/dt of a quaternion (x, y, z, w) for the angular velocity (3,) in body axes [rad/s]."""
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
     p, q, r = omega_b[0], omega_b[1], omega_b[2]
-    return 0.5 * np.array(
-        [w * p + y * r - z * q, w * q + z * p - x * r, w * r + x * q - y * p, -x * p - y * q - z * r]
+    return (
+        0.5 * (w * p + y * r - z * q),
+        0.5 * (w * q + z * p - x * r),
+        0.5 * (w * r + x * q - y * p),
+        -0.5 * (x * p + y * q + z * r),
     )
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.frames import cross
-from shipcrane_twin.physics.tables import by_direction
+from shipcrane_twin.physics.linalg import row_dot
+from shipcrane_twin.physics.tables import table_place
 
 
 class HullParams(NamedTuple):
@@ -50,7 +50,7 @@ class HullParams(NamedTuple):
 
 
 @njit(cache=True)
-def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -> tuple[float, Array]:
+def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -> tuple[float, float, float, float]:
     """Return the hydrostatic load: weight and buoyancy of the ship together.
 
     Parameters
@@ -63,7 +63,7 @@ def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -
 
     Returns
     -------
-    float, float64 (3,)
+    float, four times
         Vertical force [N, world up] and moment about the CoG [N m, body axes].
 
     Notes
@@ -78,19 +78,12 @@ def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -
     roll_load = hull.ballast[1] - c[3, 3] * roll
     pitch_load = hull.ballast[2] - c[4, 2] * rise - c[4, 4] * pitch
     sr, cr, tp = np.sin(roll), np.cos(roll), np.tan(pitch)
-    moment_b = np.array(
-        [
-            roll_load,
-            cr * pitch_load + sr * tp * roll_load,
-            -sr * pitch_load + cr * tp * roll_load,
-        ]
-    )
-    return force_up, moment_b
+    return force_up, roll_load, cr * pitch_load + sr * tp * roll_load, -sr * pitch_load + cr * tp * roll_load
 
 
 @njit(cache=True)
-def current_load(hull: HullParams, flow_x: float, flow_y: float) -> Array:
-    """Return surge force, sway force and yaw moment (3,) [N, N, N m; FLU] of steady flow past the hull.
+def current_load(hull: HullParams, flow_x: float, flow_y: float) -> tuple[float, float, float]:
+    """Return surge force, sway force and yaw moment [N, N, N m; FLU] of steady flow past the hull.
 
     Parameters
     ----------
@@ -104,11 +97,14 @@ def current_load(hull: HullParams, flow_x: float, flow_y: float) -> Array:
     coefficients are fitted to the whole moment, so they hold the Munk moment already.
     """
     angle = np.arctan2(-flow_y, flow_x)  # clockwise from the bow, as the table has it
-    side = 1.0 if angle >= 0.0 else -1.0
-    load = hull.current_scale * by_direction(hull.current_table, angle) * (flow_x * flow_x + flow_y * flow_y)
-    load[1] *= -side  # FRD to FLU
-    load[2] *= -side
-    return load
+    to_flu = -1.0 if angle >= 0.0 else 1.0
+    table, scale = hull.current_table, hull.current_scale
+    row, part = table_place(table, angle)
+    square = flow_x * flow_x + flow_y * flow_y
+    surge = (1.0 - part) * table[row, 1] + part * table[row + 1, 1]
+    sway = (1.0 - part) * table[row, 2] + part * table[row + 1, 2]
+    yaw = (1.0 - part) * table[row, 3] + part * table[row + 1, 3]
+    return scale[0] * square * surge, to_flu * scale[1] * square * sway, to_flu * scale[2] * square * yaw
 
 
 @njit(cache=True)
@@ -138,28 +134,27 @@ def turning_drag(hull: HullParams, sway: float, yaw_rate: float) -> tuple[float,
 
 
 @njit(cache=True)
-def damping_load(hull: HullParams, nu_rel_b: Array) -> Array:
-    """Return the viscous load (6,) about the CoG for the velocity (6,) relative to the water, body axes."""
-    load = np.zeros(6)
+def add_viscous_load(load: Array, hull: HullParams, nu_rel_b: Array) -> None:
+    """Add to a load (6,) about the CoG the viscous one for the velocity (6,) relative to the water, body axes."""
     for i in range(6):
         for j in range(6):
             load[i] -= hull.damping[i, j] * nu_rel_b[j]
-    drag = current_load(hull, -nu_rel_b[0], -nu_rel_b[1])
-    load[0] += drag[0]
-    load[1] += drag[1]
+    surge, sway, yaw = current_load(hull, -nu_rel_b[0], -nu_rel_b[1])
     turn_force, turn_moment = turning_drag(hull, nu_rel_b[1], nu_rel_b[5])
-    load[1] += turn_force
+    load[0] += surge
+    load[1] += sway + turn_force
     load[3] -= hull.roll_quadratic * nu_rel_b[3] * abs(nu_rel_b[3])
-    load[5] += drag[2] + turn_moment
-    return load
+    load[5] += yaw + turn_moment
 
 
 @njit(cache=True)
-def added_mass_bias(hull: HullParams, nu_rel_b: Array, water_b: Array) -> Array:
-    """Return the velocity-dependent added-mass load (6,) that stands beside ``added_mass @ nu_dot``.
+def add_added_mass_bias(load: Array, hull: HullParams, nu_rel_b: Array, water_b: Array) -> None:
+    """Add to a load (6,) the velocity-dependent one that stands beside ``added_mass @ nu_dot``.
 
     Parameters
     ----------
+    load : float64, shape (6,)
+        About the CoG, body axes; changed in place.
     hull : HullParams
     nu_rel_b : float64, shape (6,)
         Velocity relative to the water, body axes.
@@ -172,16 +167,15 @@ def added_mass_bias(hull: HullParams, nu_rel_b: Array, water_b: Array) -> Array:
     current coefficients contain. Water that is steady in the world turns in body axes, so the
     relative acceleration is ``nu_dot + omega x water_b``.
     """
-    omega = nu_rel_b[3:]
-    relative = np.zeros(6)
-    turning = cross(omega, water_b)
-    momentum = np.zeros(6)
+    added = hull.added_mass
+    p, q, r = nu_rel_b[3], nu_rel_b[4], nu_rel_b[5]
+    turn_x = q * water_b[2] - r * water_b[1]
+    turn_y = r * water_b[0] - p * water_b[2]
+    turn_z = p * water_b[1] - q * water_b[0]
     for i in range(6):
-        for j in range(3):
-            relative[i] += hull.added_mass[i, j] * turning[j]
-        for j in range(6):
-            momentum[i] += hull.added_mass[i, j] * nu_rel_b[j]
-    load = np.empty(6)
-    load[:3] = -relative[:3] - cross(omega, momentum[:3])
-    load[3:] = -relative[3:] - cross(omega, momentum[3:])
-    return load
+        load[i] -= added[i, 0] * turn_x + added[i, 1] * turn_y + added[i, 2] * turn_z
+    for part in (0, 3):
+        x, y, z = row_dot(added, part, nu_rel_b), row_dot(added, part + 1, nu_rel_b), row_dot(added, part + 2, nu_rel_b)
+        load[part] -= q * z - r * y
+        load[part + 1] -= r * x - p * z
+        load[part + 2] -= p * y - q * x

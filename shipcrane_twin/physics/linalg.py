@@ -6,6 +6,15 @@ from shipcrane_twin.physics.arrays import Array
 
 
 @njit(cache=True)
+def row_dot(matrix: Array, i: int, x: Array) -> float:
+    """Return row i of ``matrix @ x``."""
+    total = 0.0
+    for j in range(x.shape[0]):
+        total += matrix[i, j] * x[j]
+    return total
+
+
+@njit(cache=True)
 def factorise(matrix: Array) -> bool:
     """Replace a symmetric positive definite matrix (n, n) by its factors L D L^T, in the lower triangle.
 

@@ -38,20 +38,20 @@ def radiation_count(params: RadiationParams) -> int:
 
 
 @njit(cache=True)
-def radiation_step(params: RadiationParams, memory: Array, nu_rel_b: Array, rate: Array, load: Array) -> None:
-    """Write the memory's rate and take the load off the hull's load.
+def add_memory_load(load: Array, params: RadiationParams, memory: Array, nu_rel_b: Array, rate: Array) -> None:
+    """Add to a load (6,) that of the memory, and write the memory's rate.
 
     Parameters
     ----------
+    load : float64, shape (6,)
+        About the CoG, body axes; changed in place.
     params : RadiationParams
     memory : float64, shape (12 p,)
         States by block, driving mode, section.
     nu_rel_b : float64, shape (6,)
-        Velocity relative to the water, body axes. A constant one gives no load.
+        Velocity relative to the water, body axes. A constant one gives no load in the end.
     rate : float64, shape (12 p,)
         Overwritten.
-    load : float64, shape (6,)
-        The memory's load is added.
     """
     a, b, c = params.a, params.b, params.c
     sections = b.shape[1]

@@ -15,12 +15,11 @@ from shipcrane_twin.physics.frames import (
     euler_from_matrix,
     matrix_from_quat,
     quat_rate,
-    rotate_to_body,
     rotate_to_world,
 )
-from shipcrane_twin.physics.hull import HullParams, added_mass_bias, damping_load, restoring_load
-from shipcrane_twin.physics.linalg import factorise, solve_factorised
-from shipcrane_twin.physics.radiation import RadiationParams, radiation_step
+from shipcrane_twin.physics.hull import HullParams, add_added_mass_bias, add_viscous_load, restoring_load
+from shipcrane_twin.physics.linalg import factorise, row_dot, solve_factorised
+from shipcrane_twin.physics.radiation import RadiationParams, add_memory_load
 
 
 class VesselParams(NamedTuple):
@@ -81,16 +80,17 @@ def attached_inertia(body: Array, offset: Array) -> Array:
 
 
 @njit(cache=True)
-def momentum_bias(mass6: Array, nu_b: Array) -> Array:
-    """Return ``C(nu) nu`` (6,) of a rigid body with inertia (6, 6) moving with nu (6,), body axes."""
-    momentum = np.zeros(6)
-    for i in range(6):
-        for j in range(6):
-            momentum[i] += mass6[i, j] * nu_b[j]
-    bias = np.empty(6)
-    bias[:3] = cross(nu_b[3:], momentum[:3])
-    bias[3:] = cross(nu_b[3:], momentum[3:]) + cross(nu_b[:3], momentum[:3])
-    return bias
+def add_momentum_bias(load: Array, mass6: Array, nu_b: Array) -> None:
+    """Add to a load (6,) ``-C(nu) nu`` of a rigid body with inertia (6, 6) moving with nu (6,), body axes."""
+    u, v, w, p, q, r = nu_b[0], nu_b[1], nu_b[2], nu_b[3], nu_b[4], nu_b[5]
+    x, y, z = row_dot(mass6, 0, nu_b), row_dot(mass6, 1, nu_b), row_dot(mass6, 2, nu_b)
+    k, m, n = row_dot(mass6, 3, nu_b), row_dot(mass6, 4, nu_b), row_dot(mass6, 5, nu_b)
+    load[0] -= q * z - r * y
+    load[1] -= r * x - p * z
+    load[2] -= p * y - q * x
+    load[3] -= q * n - r * m + v * z - w * y
+    load[4] -= r * k - p * n + w * x - u * z
+    load[5] -= p * m - q * k + u * y - v * x
 
 
 @njit(cache=True)
@@ -144,39 +144,51 @@ def state_rate(
     ``(M_RB + M_attached + A_inf) nu_dot = load + weight + restoring + viscous + memory - C(nu) nu - C_A(nu_r) nu_r``
     (Fossen 2005; Fossen 2011, section 8.3, about the CoG).
     """
-    quat = state[3:7]
     nu_b = state[7:13]
-    rot = matrix_from_quat(quat)
+    rot = matrix_from_quat(state[3:7])
     roll, pitch, _ = euler_from_matrix(rot)
     hull = params.hull
-    mass6, factors = inertia
 
-    water_b = rotate_to_body(rot, water_w)
-    nu_rel_b = nu_b.copy()
-    nu_rel_b[:3] -= water_b
+    motion = np.empty((2, 6))  # of the water, of the ship in it
+    water_b, nu_rel_b = motion[0, :3], motion[1]
+    for i in range(3):
+        water_b[i] = rot[0, i] * water_w[0] + rot[1, i] * water_w[1] + rot[2, i] * water_w[2]
+        nu_rel_b[i] = nu_b[i] - water_b[i]
+        nu_rel_b[3 + i] = nu_b[3 + i]
 
-    rate = np.empty_like(state)
-    total = load_b - momentum_bias(mass6, nu_b)
-    total += damping_load(hull, nu_rel_b)
-    total += added_mass_bias(hull, nu_rel_b, water_b)
-    radiation_step(params.radiation, state[13:], nu_rel_b, rate[13:], total)
+    rate = np.empty(state.shape[0])
+    total = rate[7:13]
+    for i in range(6):
+        total[i] = load_b[i]
+    add_momentum_bias(total, inertia[0], nu_b)
+    add_viscous_load(total, hull, nu_rel_b)
+    add_added_mass_bias(total, hull, nu_rel_b, water_b)
+    add_memory_load(total, params.radiation, state[13:], nu_rel_b, rate[13:])
 
-    force_up, moment_b = restoring_load(hull, state[2], roll, pitch)
-    up_b = rot[2]
-    weight_b = (-attached[0] * params.gravity) * up_b
-    total[:3] += force_up * up_b + weight_b
-    total[3:] += moment_b + cross(attached[1:4] + params.crane_base - params.cog, weight_b)
+    force_up, roll_moment, pitch_moment, yaw_moment = restoring_load(hull, state[2], roll, pitch)
+    weight = -attached[0] * params.gravity
+    arm_x = attached[1] + params.crane_base[0] - params.cog[0]
+    arm_y = attached[2] + params.crane_base[1] - params.cog[1]
+    arm_z = attached[3] + params.crane_base[2] - params.cog[2]
+    up_x, up_y, up_z = rot[2, 0], rot[2, 1], rot[2, 2]
+    total[0] += (force_up + weight) * up_x
+    total[1] += (force_up + weight) * up_y
+    total[2] += (force_up + weight) * up_z
+    total[3] += roll_moment + weight * (arm_y * up_z - arm_z * up_y)
+    total[4] += pitch_moment + weight * (arm_z * up_x - arm_x * up_z)
+    total[5] += yaw_moment + weight * (arm_x * up_y - arm_y * up_x)
 
-    solve_factorised(factors, total)
-    rate[:3] = rotate_to_world(rot, nu_b[:3])
-    rate[3:7] = quat_rate(quat, nu_b[3:])
-    rate[7:13] = total
+    solve_factorised(inertia[1], total)
+    for i in range(3):
+        rate[i] = rot[i, 0] * nu_b[0] + rot[i, 1] * nu_b[1] + rot[i, 2] * nu_b[2]
+    rate[3], rate[4], rate[5], rate[6] = quat_rate(state[3:7], nu_b[3:])
     return rate
 
 
 @njit(cache=True)
 def vessel_step(
     params: VesselParams,
+    inertia: tuple[Array, Array],
     state: Array,
     load_from_b: Array,
     load_to_b: Array,
@@ -185,15 +197,24 @@ def vessel_step(
     step_s: float,
 ) -> Array:
     """Return the state (13 + r,) one classical Runge-Kutta step later; the load runs linearly over the step."""
-    inertia = carried_inertia(params, attached)
+    count = state.shape[0]
     middle = 0.5 * (load_from_b + load_to_b)
+    half = 0.5 * step_s
     k1 = state_rate(params, inertia, state, load_from_b, water_w, attached)
-    k2 = state_rate(params, inertia, state + 0.5 * step_s * k1, middle, water_w, attached)
-    k3 = state_rate(params, inertia, state + 0.5 * step_s * k2, middle, water_w, attached)
-    k4 = state_rate(params, inertia, state + step_s * k3, load_to_b, water_w, attached)
-    new = state + (step_s / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-    new[3:7] /= np.sqrt(new[3] ** 2 + new[4] ** 2 + new[5] ** 2 + new[6] ** 2)
-    return new
+    stage = np.empty(count)
+    for i in range(count):
+        stage[i] = state[i] + half * k1[i]
+    k2 = state_rate(params, inertia, stage, middle, water_w, attached)
+    for i in range(count):
+        stage[i] = state[i] + half * k2[i]
+    k3 = state_rate(params, inertia, stage, middle, water_w, attached)
+    for i in range(count):
+        stage[i] = state[i] + step_s * k3[i]
+    k4 = state_rate(params, inertia, stage, load_to_b, water_w, attached)
+    for i in range(count):
+        stage[i] = state[i] + (step_s / 6.0) * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
+    stage[3:7] /= np.sqrt(stage[3] ** 2 + stage[4] ** 2 + stage[5] ** 2 + stage[6] ** 2)
+    return stage
 
 
 @njit(cache=True)

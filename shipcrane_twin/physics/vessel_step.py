@@ -85,10 +85,10 @@ def vessel_macro_step(
     steps = int(np.ceil(step_s / MICRO_STEP_MAX_S - 1e-9))
     change = (weather_b - memory[WEATHER]) / steps
     load_to = steady_b + memory[WEATHER]
+    inertia = carried_inertia(params, attached)
     for _ in range(steps):
         load_from, load_to = load_to, load_to + change
-        state = vessel_step(params, state, load_from, load_to, water_w, attached, step_s / steps)
-    inertia = carried_inertia(params, attached)
+        state = vessel_step(params, inertia, state, load_from, load_to, water_w, attached, step_s / steps)
     rates = state_rate(params, inertia, state, steady_b + weather_b, water_w, attached)[7:13]
     new[STATE] = state[:13]
     new[RATES] = rates

@@ -11,7 +11,7 @@ from shipcrane_twin.physics.frames import euler_from_matrix, matrix_from_quat
 from shipcrane_twin.physics.radiation import radiation_count
 from shipcrane_twin.physics.sea.components import Waves, make_waves
 from shipcrane_twin.physics.sea.loads import WaveLoadParams, wave_load, wave_load_params
-from shipcrane_twin.physics.vessel import VesselParams, vessel_step
+from shipcrane_twin.physics.vessel import VesselParams, carried_inertia, vessel_step
 
 RAMP_S, SETTLE_S = 40.0, 160.0
 """Growth of the wave, and time for what it set going to die out."""
@@ -32,6 +32,7 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
     still = np.zeros(3)
     out = np.zeros((count + 1, 6))
     load_to = np.zeros(6)
+    inertia = carried_inertia(params, NOTHING)
     for k in range(count):
         load_from = load_to
         yaw = out[k, 5]
@@ -39,7 +40,7 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
         load_to = first_order.copy()
         load_to[:2] += drift[:2]
         load_to[5] += drift[2]
-        state = vessel_step(params, state, load_from, load_to, still, NOTHING, step_s)
+        state = vessel_step(params, inertia, state, load_from, load_to, still, NOTHING, step_s)
         roll, pitch, yaw = euler_from_matrix(matrix_from_quat(state[3:7]))
         out[k + 1] = np.array([state[0], state[1], state[2] - params.hull.design_height, roll, pitch, yaw])
     return out

@@ -45,7 +45,15 @@ def rate_of(ship, state, load_b, water_w, attached):
 
 def held_step(ship, state, load_b, water_w, attached, step_s):
     """One step under a constant load."""
-    return vessel_step(ship, state, load_b, load_b, water_w, attached, step_s)
+    inertia = carried_inertia(ship, attached)
+    return vessel_step(ship, inertia, state, load_b, load_b, water_w, attached, step_s)
+
+
+def alone(add, *args):
+    """What a kernel adds to a load of nothing."""
+    load = np.zeros(6)
+    add(load, *args)
+    return load
 
 
 def body_of_points(masses, points):
