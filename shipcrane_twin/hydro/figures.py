@@ -12,21 +12,17 @@ from scipy.linalg import expm
 
 from shipcrane_twin.hydro.compare import MODES
 from shipcrane_twin.hydro.database import LATERAL, LONGITUDINAL, Complex, HydroDatabase, RadiationFit
+from shipcrane_twin.hydro.figure_style import COLOURS, DPI, INK, TINY, blank, finish, grid, legend_below
 from shipcrane_twin.hydro.memory import retardation
-from shipcrane_twin.hydro.rao import natural_periods, raos, roll_damping, usual_mass
+from shipcrane_twin.hydro.rao import natural_periods, own_mass, raos, roll_damping, usual_mass
 from shipcrane_twin.physics.arrays import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Okabe and Ito 2008, as in report.style, which stands above this package.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00")
-INK, GRID = "#222222", "#D8D8D8"
-FONT, SMALL, DPI = 10, 9, 130
 TOWARD = "wave goes to (0° following sea, 90° to port, 180° head sea)"
 DIRECTIONS_DEG = (0.0, 45.0, 90.0, 135.0, 180.0)
-PERIOD_MARKS = (2, 3, 4, 5, 6, 8, 10, 15, 30)
 
 
 class Ships(NamedTuple):
@@ -36,6 +32,12 @@ class Ships(NamedTuple):
     other: HydroDatabase | None
     mass6: Array
     extra_damping: Array
+
+    def titled(self, title: str) -> str:
+        """Return a title with the names of the ships."""
+        if self.other is None:
+            return f"{title}: {self.data.name}"
+        return f"{title}: {self.data.name} (solid), {self.other.name} (dashed)"
 
     def each(self) -> Iterator[tuple[HydroDatabase, str]]:
         """Yield database and line style: solid, then dashed."""
@@ -64,7 +66,8 @@ def draw(
     other : HydroDatabase, optional
         Dashed lines.
     mass6 : float64, shape (6, 6), optional
-        Rigid-body mass about the CoG, for motions and natural periods; by usual radii of gyration if absent.
+        Moments of inertia about the CoG, for motions and natural periods; each ship keeps its own mass. By usual radii
+        of gyration if absent.
     extra_damping : float64, shape (6, 6), optional
         Linear damping beside radiation, for the motions; 5 % of critical in roll if absent.
     mesh : tuple of float64, shape (k, 3), and int, shape (j, 4), optional
@@ -97,44 +100,6 @@ def draw(
     return paths
 
 
-def grid(title: str, ships: Ships | None, rows: int = 2) -> tuple[Figure, list[Axes]]:
-    """Return a figure with rows of three axes."""
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    figure = Figure(figsize=(11.0, 3.1 * rows + 0.9), layout=ConstrainedLayoutEngine(wspace=0.05, hspace=0.05))
-    if ships is not None:
-        title += f": {ships.data.name}"
-        if ships.other is not None:
-            title += f" (solid), {ships.other.name} (dashed)"
-    figure.suptitle(title, fontsize=FONT + 2, color=INK)
-    return figure, list(figure.subplots(rows, 3, squeeze=False).ravel())
-
-
-def finish(axes: Axes, title: str, y_label: str, x_label: str, *, to: float | None = None) -> None:
-    """Label axes; frequency axes end at `to` [rad/s] and have the period on top."""
-    axes.set_title(title, fontsize=FONT, color=INK, loc="left")
-    axes.set_xlabel(x_label, fontsize=SMALL, color=INK)
-    axes.set_ylabel(y_label, fontsize=SMALL, color=INK)
-    axes.tick_params(labelsize=SMALL, colors=INK)
-    axes.grid(color=GRID, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["right"]].set_visible(False)
-    axes.axhline(0.0, color=INK, linewidth=0.6)
-    if to is None:
-        axes.spines[["top"]].set_visible(False)
-        return
-    axes.set_xlim(0.0, to)
-    top = axes.secondary_xaxis("top")
-    marks = [
-        period for period in PERIOD_MARKS if 2.0 * np.pi / period <= to and (to < 3.0 or period not in (8, 15, 30))
-    ]
-    top.set_xticks([2.0 * np.pi / period for period in marks], [f"{period}" for period in marks])
-    top.tick_params(labelsize=SMALL - 1, colors="#707070", length=2)
-    top.set_xlabel("period [s]", fontsize=SMALL - 1, color="#707070", labelpad=2)
-    axes.title.set_position((0.0, 1.0))
-
-
 def last(ships: Ships) -> float:
     """Return where frequency axes end [rad/s]."""
     return float(ships.data.omega[-1])
@@ -150,7 +115,7 @@ def line_and_dots(
 
 def radiation(ships: Ships, title: str, letter: str, pairs: list[tuple[int, int]]) -> Figure:
     """Draw entries of the added mass (A) or damping (B) matrix: tables as lines, state space as dots."""
-    figure, all_axes = grid(title, ships)
+    figure, all_axes = grid(ships.titled(title))
     for axes, (i, j) in zip(all_axes, pairs, strict=True):
         for (data, style), colour in zip(ships.each(), COLOURS, strict=False):
             table = data.added_mass if letter == "A" else data.damping
@@ -200,7 +165,7 @@ def impulse(fit: RadiationFit, time: Array) -> Array:
 
 def memory(ships: Ships) -> Figure:
     """Draw retardation functions from the damping (lines) and of the state-space model (dots)."""
-    figure, all_axes = grid("Retardation functions K(t), damping beyond the table taken to fall as w⁻³", ships)
+    figure, all_axes = grid(ships.titled("Retardation functions K(t), damping beyond the table taken to fall as w⁻³"))
     time = np.linspace(0.0, 15.0, 301)
     for (data, style), colour in zip(ships.each(), COLOURS, strict=False):
         integral, model = retardation(data.omega, data.damping, time), impulse(data.fit, time)
@@ -223,18 +188,9 @@ def by_direction(axes: Axes, data: HydroDatabase, values: Complex | Array, style
         axes.plot(data.omega, values[:, at], style, color=colour, linewidth=1.3, label=label)
 
 
-def legend_below(figure: Figure, axes: Axes, title: str | None = None) -> None:
-    """Put the legend of one of the axes below all of them."""
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside lower center", ncols=len(labels), fontsize=SMALL, frameon=False,
-        title=title, title_fontsize=SMALL,
-    )  # fmt: skip
-
-
 def excitation(ships: Ships) -> Figure:
     """Draw amplitudes of the wave loads."""
-    figure, all_axes = grid("Wave loads per wave amplitude", ships)
+    figure, all_axes = grid(ships.titled("Wave loads per wave amplitude"))
     for mode, axes in enumerate(all_axes):
         for data, style in ships.each():
             by_direction(axes, data, np.abs(data.excitation[..., mode]) / 1e3, style)
@@ -246,7 +202,7 @@ def excitation(ships: Ships) -> Figure:
 
 def drift(ships: Ships) -> Figure:
     """Draw the mean second-order loads."""
-    figure, all_axes = grid("Mean drift per squared wave amplitude", ships, rows=1)
+    figure, all_axes = grid(ships.titled("Mean drift per squared wave amplitude"), rows=1)
     for column, (axes, name) in enumerate(zip(all_axes, ("surge", "sway", "yaw"), strict=True)):
         for data, style in ships.each():
             by_direction(axes, data, data.drift[..., column] / 1e3, style)
@@ -255,14 +211,23 @@ def drift(ships: Ships) -> Figure:
     return figure
 
 
+def assumed(ships: Ships) -> str:
+    """Return a line that tells the inertia and the roll damping of the motions."""
+    radii = np.sqrt(np.diag(ships.mass6)[3:] / ships.mass6[0, 0])
+    inertia = ships.mass6[3, 3] + ships.data.added_mass_inf[3, 3]
+    share = 50.0 * ships.extra_damping[3, 3] / np.sqrt(ships.data.restoring[3, 3] * inertia)
+    text = ", ".join(f"{radius:.2f}" for radius in radii)
+    return f"\nradii of gyration {text} m, roll damping beside radiation {share:.1f} % of critical"
+
+
 def motions(ships: Ships) -> Figure:
     """Draw amplitudes of the motions, with natural periods marked."""
-    figure, all_axes = grid("Motions of the CoG per wave amplitude", ships)
+    figure, all_axes = grid(ships.titled("Motions of the CoG per wave amplitude") + assumed(ships))
     for data, style in ships.each():
-        table = np.abs(raos(data, ships.mass6, ships.extra_damping))
+        table = np.abs(raos(data, own_mass(ships.mass6, data), ships.extra_damping))
         for mode, axes in enumerate(all_axes):
             by_direction(axes, data, table[..., mode] if mode < 3 else np.rad2deg(table[..., mode]), style)
-    periods = natural_periods(ships.data, ships.mass6)
+    periods = natural_periods(ships.data, own_mass(ships.mass6, ships.data))
     for mode, axes in enumerate(all_axes):
         finish(axes, MODES[mode], "[m/m]" if mode < 3 else "[deg/m]", "frequency [rad/s]", to=last(ships))
         top = 1.5 if mode < 3 else axes.get_ylim()[1]
@@ -273,7 +238,7 @@ def motions(ships: Ships) -> Figure:
             late = at > 0.55 * last(ships)
             axes.annotate(
                 f"natural period {periods[MODES[mode]]:.2f} s", (at, 0.98), xycoords=("data", "axes fraction"),
-                xytext=(-3 if late else 3, 0), textcoords="offset points", fontsize=SMALL - 1, color=INK, va="top",
+                xytext=(-3 if late else 3, 0), textcoords="offset points", fontsize=TINY, color=INK, va="top",
                 ha="right" if late else "left",
             )  # fmt: skip
     legend_below(figure, all_axes[0], TOWARD)
@@ -281,14 +246,14 @@ def motions(ships: Ships) -> Figure:
 
 
 def hull(points: Array, panels: NDArray[np.integer[Any]]) -> Figure:
-    """Draw the panels from the side, from above, from the bow and the stern."""
+    """Draw the panels from the side, from below and along the ship."""
     from matplotlib.collections import PolyCollection
 
-    figure, all_axes = grid(f"Hull: {len(panels)} panels", None, rows=1)
-    views = (("from the side", (0, 2), "xz"), ("from below", (0, 1), "xy"), ("sections", (1, 2), "yz"))
+    figure = blank(f"Hull: {len(panels)} panels", 4.6)
+    all_axes = figure.subplot_mosaic([["xz", "yz"], ["xy", "yz"]], width_ratios=(1.7, 1.0))
     corners = np.asarray(points)[np.asarray(panels)]
-    for axes, (title, plane, names) in zip(all_axes, views, strict=True):
-        flat = corners[:, :, list(plane)]
+    for (names, axes), title in zip(all_axes.items(), ("from the side", "sections", "from below"), strict=True):
+        flat = corners[:, :, ["xyz".index(name) for name in names]]
         axes.add_collection(PolyCollection(list(flat), facecolors="none", edgecolors=COLOURS[0], linewidths=0.4))
         axes.set_aspect("equal")
         axes.autoscale_view()

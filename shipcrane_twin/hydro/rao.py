@@ -30,6 +30,13 @@ def usual_mass(data: HydroDatabase) -> Array:
     )
 
 
+def own_mass(mass6: Array, data: HydroDatabase) -> Array:
+    """Return a mass matrix (6, 6) with the mass that the database displaces, and the same moments of inertia."""
+    out = mass6.copy()
+    out[:3, :3] = np.eye(3) * data.mass
+    return out
+
+
 def roll_damping(data: HydroDatabase, mass6: Array, share: float = 0.05) -> Array:
     """Return a linear roll damping (6, 6) beside radiation, a share of critical."""
     out = np.zeros((6, 6))

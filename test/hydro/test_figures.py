@@ -21,7 +21,7 @@ def test_every_figure_is_drawn_with_ink_in_it(tmp_path):
     assert names == ["hull", "added_mass", "damping", "coupling", "memory", "excitation", "drift", "motions"]
     for path in paths:
         picture = matplotlib.image.imread(path)[..., :3]
-        assert picture.shape[1] == 1430
+        assert picture.shape[1] == 1430, path
         assert 0.01 < (picture.min(axis=2) < 0.9).mean() < 0.4, path
 
 

@@ -5,7 +5,15 @@ import pytest
 from imported_ships import OMEGA, a_ship, mass_of
 
 from shipcrane_twin.config.settings import ConfigError
-from shipcrane_twin.hydro.rao import coupled_periods, mass_matrix, natural_periods, raos, roll_damping, usual_mass
+from shipcrane_twin.hydro.rao import (
+    coupled_periods,
+    mass_matrix,
+    natural_periods,
+    own_mass,
+    raos,
+    roll_damping,
+    usual_mass,
+)
 
 
 def single(data):
@@ -94,6 +102,12 @@ def test_an_unstable_ship_is_refused():
 
 def test_a_mass_matrix_is_diagonal_about_the_cog():
     np.testing.assert_array_equal(np.diag(mass_matrix(1.0, 2.0, 3.0, 4.0)), [1.0, 1.0, 1.0, 2.0, 3.0, 4.0])
+
+
+def test_own_mass_keeps_the_inertia():
+    data = a_ship()
+    found = own_mass(np.diag([1.0, 1.0, 1.0, 7.0, 8.0, 9.0]), data)
+    np.testing.assert_array_equal(np.diag(found), [data.mass] * 3 + [7.0, 8.0, 9.0])
 
 
 def test_usual_radii_and_roll_damping():
