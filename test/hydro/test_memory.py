@@ -22,3 +22,11 @@ def test_infinite_added_mass_follows_from_the_table():
     found = infinite_added_mass(omega, added, damping)
     scale = np.sqrt(np.diag(infinite))
     np.testing.assert_allclose(found / np.outer(scale, scale), infinite / np.outer(scale, scale), atol=0.02)
+
+
+def test_damping_beyond_the_table_falls_with_the_third_power():
+    omega = np.linspace(0.01, 3.0, 300)
+    damping = np.where(omega < 1.0, omega, omega**-3.0)
+    found = retardation(omega, damping, np.array([0.0]))
+    # (2/pi) (1/2 below w = 1, (1 - 12^-2)/2 from there to the grid's end)
+    np.testing.assert_allclose(found, 2.0 / np.pi * (0.5 + 0.5 * (1.0 - 12.0**-2)), rtol=2e-3)
