@@ -43,9 +43,8 @@ def infinite_added_mass(omega: Array, added_mass: Array, damping: Array) -> Arra
 
     Notes
     -----
-    ``A_inf = A(w) + (1/w) int_0^inf K(t) sin(w t) dt``; with K from the damping the time integral is done in closed
-    form and leaves the principal value ``A_inf = A(w) + (2/pi) PV int_0^inf B(v)/(v^2 - w^2) dv`` up to its sign,
-    taken here over a Fourier grid. The mean over the upper half of the table, where the tail counts least.
+    ``A_inf = A(w) + (1/w) int_0^inf K(t) sin(w t) dt`` (Ogilvie 1964) with K from the damping, as the mean over the
+    upper half of the table, where a small error of the integral counts least.
     """
     grid, values = extended(omega, damping)
     upper = omega >= np.median(omega)

@@ -5,9 +5,12 @@ import pytest
 from imported_ships import shipx_folder, without_fit
 
 from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.hydro.database import MIRROR
 from shipcrane_twin.hydro.rao import natural_periods, raos
 from shipcrane_twin.hydro.veres import import_veres, read_motions
+from shipcrane_twin.hydro.veres_coefficients import FROM_AFT
 from shipcrane_twin.hydro.veres_extras import read_extras
+from shipcrane_twin.hydro.veres_files import read_transfer
 
 
 @pytest.fixture(scope="module")
@@ -93,6 +96,27 @@ def test_sway_yaw_and_their_coupling_with_roll(ship, motions, extras):
     for mode, bar in ((1, 0.02), (5, 0.05)):
         error = np.abs(left[..., mode] - ship.excitation[..., mode]).max(axis=1)
         assert (error / np.abs(ship.excitation[..., mode]).max()).max() < bar
+
+
+def test_what_roll_lacks_is_a_damping_that_grows_with_its_amplitude(ship, motions, extras):
+    """At the resonance: a real positive remainder, per roll amplitude the same for all directions (quadratic)."""
+    n = int(np.argmin(np.abs(ship.omega - 2 * np.pi / 6)))
+    w = ship.omega[n]
+    impedance = ship.restoring - w**2 * (extras.mass + ship.added_mass[n]) + 1j * w * ship.damping[n]
+    oblique = slice(2, -2)
+    roll = motions[n, oblique, 3]
+    lack = (ship.excitation[n] - motions[n] @ impedance.T)[oblique, 3] / (1j * w * roll)
+    assert (np.abs(lack.imag) < 0.1 * lack.real).all()
+    np.testing.assert_allclose(lack.real / np.abs(roll), (lack.real / np.abs(roll)).mean(), rtol=0.06)
+
+
+def test_both_sides_of_the_file_mirror_each_other(folder):
+    table = read_transfer(folder / "input.re8", "WAVE EXCITATION FORCE")
+    values = table.values * FROM_AFT
+    for heading in (15.0, 45.0, 90.0, 135.0):
+        one, other = (values[:, int(np.flatnonzero(table.heading == h)[0])] for h in (heading, 360.0 - heading))
+        scale = np.abs(values).max(axis=(0, 1))
+        np.testing.assert_allclose(one * MIRROR / scale, other / scale, atol=2e-5)
 
 
 def test_heave_and_pitch_impedance_against_loads_and_motions(ship, motions, extras):
