@@ -15,7 +15,7 @@ from shipcrane_twin.hydro.database import HydroDatabase, asymmetry, check
 from shipcrane_twin.hydro.drift import mean_drift
 from shipcrane_twin.hydro.fit import fit_radiation
 from shipcrane_twin.hydro.hull_form import HullFormConfig, MeshConfig, SkegConfig, check_form
-from shipcrane_twin.hydro.mesh import Hydrostatics, Panels, hull_panels, hydrostatics
+from shipcrane_twin.hydro.mesh import Hydrostatics, Panels, hull_panels, hydrostatics, lid_panels
 from shipcrane_twin.hydro.panel_method import Solution, added_mass_at_infinity, capytaine_version, floating_body, solve
 from shipcrane_twin.physics.arrays import Array
 
@@ -102,13 +102,13 @@ def build_database(config: HullBuildConfig, progress: Progress = lambda text, do
         If Capytaine or cvxpy is not installed, the mesh encloses no water, or what comes out is no ship's.
     """
     progress("mesh", 0.0)
-    points, panels = hull_mesh(config)
-    still = hull_hydrostatics(config)
+    hull, still = hull_mesh(config), hull_hydrostatics(config)
+    lid = lid_panels(config.form, config.skeg, config.mesh, config.draught_m)
     cog, rho, gravity = np.array(config.cog_m), config.water_density_kg_m3, config.gravity_m_s2
     omega = np.array(config.frequencies_rad_s)
     direction = np.deg2rad(np.arange(0, 181, config.direction_step_deg, dtype=float))
-    bare = floating_body(points, panels, config.draught_m, cog, lid_panel=0.0)
-    body = floating_body(points, panels, config.draught_m, cog, config.mesh.lid_panel_m)
+    body = floating_body(hull, config.draught_m, cog, lid)
+    bare = floating_body(hull, config.draught_m, cog)
     infinite = added_mass_at_infinity(bare, rho)
     solutions = []
     for number, frequency in enumerate(omega):
@@ -121,10 +121,10 @@ def build_database(config: HullBuildConfig, progress: Progress = lambda text, do
     added, damping, infinite = (0.5 * (m + np.swapaxes(m, -1, -2)) for m in (added, damping, infinite))
     drift, closure = drift_loads(config, still, omega, direction, solutions)
     source = (
-        f"{capytaine_version()}, direct method, {len(panels)} panels on the port half, lid at still water; "
-        f"added mass and damping made symmetric (asymmetry was up to {100 * uneven:.2g} % of scale); conjugated from "
-        f"e^{{-iwt}}; drift from the far field, roll damping {config.drift_roll_damping:g} of critical, energy closes "
-        f"within {100 * closure:.2g} %; {datetime.now(UTC):%Y-%m-%d}"
+        f"{capytaine_version()}, direct method, {len(hull[1])} panels on the port half, {len(lid[1])} on the lid at "
+        f"still water; added mass and damping made symmetric (asymmetry was up to {100 * uneven:.2g} % of scale); "
+        f"conjugated from e^{{-iwt}}; drift from the far field, roll damping {config.drift_roll_damping:g} of critical, "
+        f"energy closes within {100 * closure:.2g} %; {datetime.now(UTC):%Y-%m-%d}"
     )
     data = HydroDatabase(
         name=config.name,

@@ -118,8 +118,8 @@ def sections(poles: Complex) -> tuple[Array, Array]:
 def states(omega: Array, a: Array, b: Array) -> Complex:
     """Return the state responses (n, 2 p) of all sections to a unit velocity at frequencies (n,)."""
     pencil = 1j * omega[:, None, None, None] * np.eye(2) - a
-    out: Complex = np.linalg.solve(pencil, np.broadcast_to(b[..., None], (*pencil.shape[:3], 1)))
-    return out.reshape(len(omega), -1)
+    pushed = np.broadcast_to(b[..., None], (*pencil.shape[:3], 1))
+    return np.linalg.solve(pencil, pushed).reshape(len(omega), -1).astype(np.complex128)
 
 
 def as_real(values: Any) -> Array:

@@ -3,7 +3,7 @@
 from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Gt, Le, Lt
+from annotated_types import Ge, Gt, Le
 
 from shipcrane_twin.config.settings import ConfigError, Number, Whole, settings
 from shipcrane_twin.physics.arrays import Array
@@ -59,12 +59,12 @@ class SkegConfig:
 
 @settings
 class MeshConfig:
-    """Panels on the port half: along the ship, from waterline to keel, down the skeg."""
+    """Panels on the port half: along the ship, from waterline to keel, down the skeg; across the lid inside."""
 
     along: Annotated[Whole, Ge(8), Le(200)]
     girth: Annotated[Whole, Ge(4), Le(60)]
     skeg: Annotated[Whole, Ge(1), Le(10)]
-    lid_panel_m: Annotated[Number, Gt(0), Lt(5)]
+    lid: Annotated[Whole, Ge(1), Le(20)]
 
 
 def check_form(form: HullFormConfig, skeg: SkegConfig, draught: float, where: str) -> None:
@@ -89,6 +89,7 @@ def check_form(form: HullFormConfig, skeg: SkegConfig, draught: float, where: st
     deepest = draught + 0.5 * abs(form.keel_rake_m)
     demand(skeg.draught_m <= deepest, "skeg.draught_m", skeg.draught_m, f"at most {deepest:g}, the raked keel's")
     demand(skeg.fore_x_m > skeg.aft_x_m, "skeg.fore_x_m", skeg.fore_x_m, f"ahead of skeg.aft_x_m = {skeg.aft_x_m:g}")
+    demand(skeg.fore_x_m < f.bow_x_m, "skeg.fore_x_m", skeg.fore_x_m, f"aft of form.bow_x_m = {f.bow_x_m:g}")
     demand(skeg.aft_x_m > f.stern_x_m, "skeg.aft_x_m", skeg.aft_x_m, f"ahead of form.stern_x_m = {f.stern_x_m:g}")
     narrow = 0.5 * f.transom_breadth_m
     demand(skeg.breadth_m < narrow, "skeg.breadth_m", skeg.breadth_m, f"below half the transom, {narrow:g}")

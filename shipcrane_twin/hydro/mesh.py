@@ -46,6 +46,18 @@ def hull_panels(form: HullFormConfig, skeg: SkegConfig, mesh: MeshConfig, draugh
     return merged(np.concatenate(quads))
 
 
+def lid_panels(form: HullFormConfig, skeg: SkegConfig, mesh: MeshConfig, draught: float) -> tuple[Array, Panels]:
+    """Return the port half of the still water inside the hull, normals down; nodes and panels as `hull_panels`.
+
+    It meets the hull's panels at the waterline, so that no gap lets an irregular frequency through.
+    """
+    x = np.array([here for here, _ in stations(form, skeg, mesh)])
+    y = half_breadth(form, x)[:, None] * np.linspace(1.0, 0.0, mesh.lid + 1)
+    grid = np.stack([np.broadcast_to(x[:, None], y.shape), y, np.full_like(y, draught)], axis=2)
+    corners = [grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]]
+    return merged(np.stack(corners, axis=2).reshape(-1, 4, 3))
+
+
 def stations(form: HullFormConfig, skeg: SkegConfig, mesh: MeshConfig) -> list[tuple[float, bool]]:
     """Return x [m] of the mesh stations, and whether the skeg hangs there; its ends stand twice, without and with."""
     share = np.linspace(0.0, 1.0, mesh.along + 1)
@@ -85,12 +97,10 @@ def merged(quads: Array) -> tuple[Array, Panels]:
     points, panels = quads.reshape(-1, 3)[first], number.reshape(-1, 4)
     normals = np.cross(points[panels[:, 2]] - points[panels[:, 0]], points[panels[:, 3]] - points[panels[:, 1]])
     panels = panels[np.linalg.norm(normals, axis=1) > 1e-7]
-    for shift in (1, 2, 3):  # a triangle ends with its double node, as mesh readers expect
-        twice = panels[:, 3] != panels[:, 2]
-        doubled = twice & (panels == np.roll(panels, 1, axis=1)).any(axis=1)
-        panels[doubled] = np.roll(panels[doubled], 1, axis=1)
-        if not doubled.any() or shift == 3:
-            break
+    for _ in range(3):  # a triangle ends with its double node, as mesh readers expect
+        double = (panels == np.roll(panels, 1, axis=1)).any(axis=1)
+        other = double & (panels[:, 3] != panels[:, 2])
+        panels[other] = np.roll(panels[other], 1, axis=1)
     return points, panels
 
 

@@ -12,6 +12,8 @@ from shipcrane_twin.hydro.drift import far_field
 from shipcrane_twin.hydro.mesh import Panels
 from shipcrane_twin.physics.arrays import Array
 
+HalfMesh = tuple[Array, Panels]
+
 
 class Solution(NamedTuple):
     """One frequency.
@@ -48,19 +50,23 @@ def load_capytaine() -> Any:
     return capytaine
 
 
-def floating_body(points: Array, panels: Panels, draught: float, cog: Array, lid_panel: float) -> Any:
-    """Return a Capytaine body about its CoG, origin above or below it in still water, with a lid inside.
+def floating_body(hull: HalfMesh, draught: float, cog: Array, lid: HalfMesh | None = None) -> Any:
+    """Return a Capytaine body about its CoG, origin above or below it in still water.
 
-    The lid at still water takes out the irregular frequencies; `lid_panel` is the largest radius of its panels [m],
-    0 for none.
+    `hull` and `lid` are nodes and panels of the port half; the lid, at still water, takes out the irregular
+    frequencies.
     """
     capytaine = load_capytaine()
-    half = capytaine.Mesh(points - np.array([cog[0], 0.0, draught]), panels)
-    mesh = capytaine.ReflectionSymmetricMesh(half, plane="xOz")
     centre = (0.0, 0.0, float(cog[2] - draught))
+
+    def whole(half: HalfMesh) -> Any:
+        points, panels = half
+        mesh = capytaine.Mesh(points - np.array([cog[0], 0.0, draught]), panels)
+        return capytaine.ReflectionSymmetricMesh(mesh, plane="xOz")
+
     return capytaine.FloatingBody(
-        mesh=mesh,
-        lid_mesh=mesh.generate_lid(z=0.0, faces_max_radius=lid_panel) if lid_panel > 0.0 else None,
+        mesh=whole(hull),
+        lid_mesh=whole(lid) if lid else None,
         dofs=capytaine.rigid_body_dofs(rotation_center=centre),
         center_of_mass=centre,
     )
