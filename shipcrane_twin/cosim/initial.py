@@ -13,10 +13,9 @@ from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import tip_state
 from shipcrane_twin.physics.crane_inertia import composite_inertia
 from shipcrane_twin.physics.frames import (
-    cross,
+    level_axes,
     matrix_from_quat,
     quat_from_euler,
-    rotate_to_body,
     rotate_to_world,
     yaw_from_heading,
 )
@@ -111,13 +110,18 @@ def equilibrium(
 def unbalanced(
     params: VesselParams, inertia: Array, tip_b: Array, force_w: Array, place: Array, yaw: float
 ) -> Array:
-    """Return what is left of vertical force and of the moments about roll and pitch axes (3,)."""
+    """Return what is left of vertical force and of the moments about level axes ahead and to port (3,)."""
     height, roll, pitch = place
     rot = matrix_from_quat(quat_from_euler(roll, pitch, yaw))
-    up, *moments = restoring_load(params.hull, height, roll, pitch)
+    up, about_ahead, about_port = restoring_load(params.hull, height, roll, pitch)
+    level = level_axes(rot)
     arm = params.crane_base - params.cog
-    weight_b = rotate_to_body(rot, np.array([0.0, 0.0, -inertia[0] * params.gravity]))
-    force_b = rotate_to_body(rot, force_w)
-    moment = np.array(moments) + cross(arm + inertia[1:4], weight_b) + cross(arm + tip_b, force_b)
-    pitch_axis = np.array([0.0, np.cos(roll), -np.sin(roll)])
-    return np.array([up - inertia[0] * params.gravity + force_w[2], moment[0], moment @ pitch_axis])
+    crane_at, tip_at = level @ (arm + inertia[1:4]), level @ (arm + tip_b)
+    crane_down, pull = inertia[0] * params.gravity, force_w[2]
+    return np.array(
+        [
+            up - crane_down + pull,
+            about_ahead - crane_at[1] * crane_down + tip_at[1] * pull,
+            about_port + crane_at[0] * crane_down - tip_at[0] * pull,
+        ]
+    )

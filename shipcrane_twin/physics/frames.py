@@ -1,4 +1,4 @@
-"""Rotations and every change between frames: body and world, marine (NED, FRD) and ROS (ENU, FLU).
+"""Rotations and every change between frames: body, level and world, marine (NED, FRD) and ROS (ENU, FLU).
 
 Inside and on topics the twin speaks REP 103: world ENU (x east, y north, z up), body FLU
 (x forward, y port, z up). Mariners' quantities (heading clockwise from north, roll positive
@@ -91,6 +91,31 @@ def euler_from_matrix(rot: Array) -> tuple[float, float, float]:
     """Return roll, pitch, yaw [rad] (z-y-x, FLU: pitch positive bow down) of a matrix (3, 3) body to world."""
     pitch = np.arcsin(min(1.0, max(-1.0, -rot[2, 0])))
     return np.arctan2(rot[2, 1], rot[2, 2]), pitch, np.arctan2(rot[1, 0], rot[0, 0])
+
+
+@njit(cache=True)
+def heading_cosines(rot: Array) -> tuple[float, float]:
+    """Return east and north part of the horizontal unit vector in which the body's x axis points."""
+    length = np.sqrt(rot[0, 0] ** 2 + rot[1, 0] ** 2)
+    return rot[0, 0] / length, rot[1, 0] / length
+
+
+@njit(cache=True)
+def level_axes(rot: Array) -> Array:
+    """Return the matrix (3, 3) from body axes to level axes: x ahead and horizontal, z up, whatever roll and pitch.
+
+    Parameters
+    ----------
+    rot : float64, shape (3, 3)
+        Body to world.
+    """
+    ahead_x, ahead_y = heading_cosines(rot)
+    out = np.empty((3, 3))
+    for i in range(3):
+        out[0, i] = ahead_x * rot[0, i] + ahead_y * rot[1, i]
+        out[1, i] = ahead_x * rot[1, i] - ahead_y * rot[0, i]
+        out[2, i] = rot[2, i]
+    return out
 
 
 @njit(cache=True)

@@ -1,7 +1,8 @@
 """Loads of the water on the hull: restoring, added mass, viscous damping and current.
 
 With the memory of `physics.radiation` this is the unified model of Fossen (2005): one set of equations for
-manoeuvring and seakeeping. All matrices are about the ship's CoG in FLU axes.
+manoeuvring and seakeeping. All matrices are about the ship's CoG in level axes (FLU of a ship without roll
+and pitch), as seakeeping theory has them.
 """
 
 from typing import NamedTuple
@@ -50,7 +51,7 @@ class HullParams(NamedTuple):
 
 
 @njit(cache=True)
-def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -> tuple[float, float, float, float]:
+def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -> tuple[float, float, float]:
     """Return the hydrostatic load: weight and buoyancy of the ship together.
 
     Parameters
@@ -63,8 +64,8 @@ def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -
 
     Returns
     -------
-    float, four times
-        Vertical force [N, world up] and moment about the CoG [N m, body axes].
+    float, three times
+        Vertical force [N, up], moments about the level axes ahead and to port through the CoG [N m].
 
     Notes
     -----
@@ -75,10 +76,8 @@ def restoring_load(hull: HullParams, height: float, roll: float, pitch: float) -
     rise = height - hull.design_height
     c = hull.restoring
     force_up = hull.ballast[0] - c[2, 2] * rise - c[2, 4] * pitch
-    roll_load = hull.ballast[1] - c[3, 3] * roll
-    pitch_load = hull.ballast[2] - c[4, 2] * rise - c[4, 4] * pitch
-    sr, cr, tp = np.sin(roll), np.cos(roll), np.tan(pitch)
-    return force_up, roll_load, cr * pitch_load + sr * tp * roll_load, -sr * pitch_load + cr * tp * roll_load
+    about_body_x = hull.ballast[1] - c[3, 3] * roll
+    return force_up, about_body_x / np.cos(pitch), hull.ballast[2] - c[4, 2] * rise - c[4, 4] * pitch
 
 
 @njit(cache=True)
@@ -134,48 +133,46 @@ def turning_drag(hull: HullParams, sway: float, yaw_rate: float) -> tuple[float,
 
 
 @njit(cache=True)
-def add_viscous_load(load: Array, hull: HullParams, nu_rel_b: Array) -> None:
-    """Add to a load (6,) about the CoG the viscous one for the velocity (6,) relative to the water, body axes."""
+def add_viscous_load(load: Array, hull: HullParams, relative: Array) -> None:
+    """Add to a load (6,) about the CoG the viscous one for the velocity (6,) relative to the water, level axes."""
     for i in range(6):
-        for j in range(6):
-            load[i] -= hull.damping[i, j] * nu_rel_b[j]
-    surge, sway, yaw = current_load(hull, -nu_rel_b[0], -nu_rel_b[1])
-    turn_force, turn_moment = turning_drag(hull, nu_rel_b[1], nu_rel_b[5])
+        load[i] -= row_dot(hull.damping, i, relative)
+    surge, sway, yaw = current_load(hull, -relative[0], -relative[1])
+    turn_force, turn_moment = turning_drag(hull, relative[1], relative[5])
     load[0] += surge
     load[1] += sway + turn_force
-    load[3] -= hull.roll_quadratic * nu_rel_b[3] * abs(nu_rel_b[3])
+    load[3] -= hull.roll_quadratic * relative[3] * abs(relative[3])
     load[5] += yaw + turn_moment
 
 
 @njit(cache=True)
-def add_added_mass_bias(load: Array, hull: HullParams, nu_rel_b: Array, water_b: Array) -> None:
-    """Add to a load (6,) the velocity-dependent one that stands beside ``added_mass @ nu_dot``.
+def add_added_mass_bias(load: Array, hull: HullParams, nu: Array, relative: Array, yaw_rate: float) -> None:
+    """Add to a load (6,) the velocity-dependent one that stands beside ``added_mass @ nu_dot``, level axes.
 
     Parameters
     ----------
     load : float64, shape (6,)
-        About the CoG, body axes; changed in place.
+        About the CoG; changed in place.
     hull : HullParams
-    nu_rel_b : float64, shape (6,)
-        Velocity relative to the water, body axes.
-    water_b : float64, shape (3,)
-        Velocity of the water, constant in the world, body axes [m/s].
+    nu, relative : float64, shape (6,)
+        Velocity, and that relative to the water, which is steady in the world.
+    yaw_rate : float
+        Of the level axes [rad/s].
 
     Notes
     -----
-    Kirchhoff's equations (Fossen 2011, section 6.3.1) without the Munk term ``v x p``, which the
-    current coefficients contain. Water that is steady in the world turns in body axes, so the
-    relative acceleration is ``nu_dot + omega x water_b``.
+    The load is ``-A d(relative)/dt`` by components, and ``-yaw_rate x`` the momentum on the force (Kirchhoff's
+    equations, Fossen 2011, section 6.3.1, for axes that only yaw); ``nu_dot`` is that of the body axes, turned. The
+    Munk term ``v x p`` is left out: the current coefficients contain it.
     """
     added = hull.added_mass
-    p, q, r = nu_rel_b[3], nu_rel_b[4], nu_rel_b[5]
-    turn_x = q * water_b[2] - r * water_b[1]
-    turn_y = r * water_b[0] - p * water_b[2]
-    turn_z = p * water_b[1] - q * water_b[0]
+    surge = nu[4] * nu[2] - nu[5] * nu[1] + yaw_rate * relative[1]
+    sway = nu[5] * nu[0] - nu[3] * nu[2] - yaw_rate * relative[0]
+    heave = nu[3] * nu[1] - nu[4] * nu[0]
+    roll, pitch = yaw_rate * relative[4], -yaw_rate * relative[3]
     for i in range(6):
-        load[i] -= added[i, 0] * turn_x + added[i, 1] * turn_y + added[i, 2] * turn_z
-    for part in (0, 3):
-        x, y, z = row_dot(added, part, nu_rel_b), row_dot(added, part + 1, nu_rel_b), row_dot(added, part + 2, nu_rel_b)
-        load[part] -= q * z - r * y
-        load[part + 1] -= r * x - p * z
-        load[part + 2] -= p * y - q * x
+        load[i] -= (
+            added[i, 0] * surge + added[i, 1] * sway + added[i, 2] * heave + added[i, 3] * roll + added[i, 4] * pitch
+        )
+    load[0] += yaw_rate * row_dot(added, 1, relative)
+    load[1] -= yaw_rate * row_dot(added, 0, relative)

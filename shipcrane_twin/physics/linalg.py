@@ -7,11 +7,12 @@ from shipcrane_twin.physics.arrays import Array
 
 @njit(cache=True)
 def row_dot(matrix: Array, i: int, x: Array) -> float:
-    """Return row i of ``matrix @ x``."""
-    total = 0.0
-    for j in range(x.shape[0]):
-        total += matrix[i, j] * x[j]
-    return total
+    """Return row i of ``matrix @ x`` for a matrix (n, 6)."""
+    return (
+        (matrix[i, 0] * x[0] + matrix[i, 1] * x[1])
+        + (matrix[i, 2] * x[2] + matrix[i, 3] * x[3])
+        + (matrix[i, 4] * x[4] + matrix[i, 5] * x[5])
+    )
 
 
 @njit(cache=True)

@@ -14,7 +14,7 @@ from shipcrane_twin.physics.arrays import Array
 
 
 class RadiationParams(NamedTuple):
-    """Sections and how they are read, about the CoG, FLU.
+    """Sections and how they are read, about the CoG, level axes.
 
     Attributes
     ----------
@@ -38,18 +38,18 @@ def radiation_count(params: RadiationParams) -> int:
 
 
 @njit(cache=True)
-def add_memory_load(load: Array, params: RadiationParams, memory: Array, nu_rel_b: Array, rate: Array) -> None:
+def add_memory_load(load: Array, params: RadiationParams, memory: Array, relative: Array, rate: Array) -> None:
     """Add to a load (6,) that of the memory, and write the memory's rate.
 
     Parameters
     ----------
     load : float64, shape (6,)
-        About the CoG, body axes; changed in place.
+        About the CoG, level axes; changed in place.
     params : RadiationParams
     memory : float64, shape (12 p,)
         States by block, driving mode, section.
-    nu_rel_b : float64, shape (6,)
-        Velocity relative to the water, body axes. A constant one gives no load in the end.
+    relative : float64, shape (6,)
+        Velocity relative to the water, level axes. A constant one gives no load in the end.
     rate : float64, shape (12 p,)
         Overwritten.
     """
@@ -57,12 +57,17 @@ def add_memory_load(load: Array, params: RadiationParams, memory: Array, nu_rel_
     sections = b.shape[1]
     at = 0
     for block in range(2):
+        low = middle = high = 0.0
         for j in range(3):
-            velocity = nu_rel_b[block + 2 * j]
+            velocity = relative[block + 2 * j]
             for k in range(sections):
                 first, second = memory[at], memory[at + 1]
                 rate[at] = a[block, k, 0, 0] * first + a[block, k, 0, 1] * second + b[block, k, 0] * velocity
                 rate[at + 1] = a[block, k, 1, 0] * first + a[block, k, 1, 1] * second + b[block, k, 1] * velocity
-                for i in range(3):
-                    load[block + 2 * i] -= c[block, i, j, k, 0] * first + c[block, i, j, k, 1] * second
+                low += c[block, 0, j, k, 0] * first + c[block, 0, j, k, 1] * second
+                middle += c[block, 1, j, k, 0] * first + c[block, 1, j, k, 1] * second
+                high += c[block, 2, j, k, 0] * first + c[block, 2, j, k, 1] * second
                 at += 2
+        load[block] -= low
+        load[block + 2] -= middle
+        load[block + 4] -= high

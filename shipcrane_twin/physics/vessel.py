@@ -13,11 +13,18 @@ from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import (
     cross,
     euler_from_matrix,
+    heading_cosines,
+    level_axes,
     matrix_from_quat,
     quat_rate,
     rotate_to_world,
 )
-from shipcrane_twin.physics.hull import HullParams, add_added_mass_bias, add_viscous_load, restoring_load
+from shipcrane_twin.physics.hull import (
+    HullParams,
+    add_added_mass_bias,
+    add_viscous_load,
+    restoring_load,
+)
 from shipcrane_twin.physics.linalg import factorise, row_dot, solve_factorised
 from shipcrane_twin.physics.radiation import RadiationParams, add_memory_load
 
@@ -79,12 +86,12 @@ def attached_inertia(body: Array, offset: Array) -> Array:
     return out
 
 
-@njit(cache=True)
-def add_momentum_bias(load: Array, mass6: Array, nu_b: Array) -> None:
-    """Add to a load (6,) ``-C(nu) nu`` of a rigid body with inertia (6, 6) moving with nu (6,), body axes."""
-    u, v, w, p, q, r = nu_b[0], nu_b[1], nu_b[2], nu_b[3], nu_b[4], nu_b[5]
-    x, y, z = row_dot(mass6, 0, nu_b), row_dot(mass6, 1, nu_b), row_dot(mass6, 2, nu_b)
-    k, m, n = row_dot(mass6, 3, nu_b), row_dot(mass6, 4, nu_b), row_dot(mass6, 5, nu_b)
+@njit(cache=True, forceinline=True)
+def add_momentum_bias(load: Array, mass6: Array, nu: Array) -> None:
+    """Add to a load (6,) ``-C(nu) nu`` of a rigid body with inertia (6, 6) moving with nu (6,); any axes."""
+    u, v, w, p, q, r = nu[0], nu[1], nu[2], nu[3], nu[4], nu[5]
+    x, y, z = row_dot(mass6, 0, nu), row_dot(mass6, 1, nu), row_dot(mass6, 2, nu)
+    k, m, n = row_dot(mass6, 3, nu), row_dot(mass6, 4, nu), row_dot(mass6, 5, nu)
     load[0] -= q * z - r * y
     load[1] -= r * x - p * z
     load[2] -= p * y - q * x
@@ -94,33 +101,41 @@ def add_momentum_bias(load: Array, mass6: Array, nu_b: Array) -> None:
 
 
 @njit(cache=True)
-def carried_inertia(params: VesselParams, attached: Array) -> tuple[Array, Array]:
-    """Return the rigid inertia (6, 6) of ship and carried body about the CoG, and factors of it with added mass.
-
-    Parameters
-    ----------
-    params : VesselParams
-    attached : float64, shape (10,)
-        Rigid body carried along at crane_base.
-
-    Raises
-    ------
-    ValueError
-        If the inertia is not positive definite.
-    """
-    mass6 = params.rigid_mass + attached_inertia(attached, params.crane_base - params.cog)
-    factors = mass6 + params.hull.added_mass
-    if not factorise(factors):
-        raise ValueError("ship: the inertia with added mass is not positive definite")
-    return mass6, factors
+def carried_inertia(params: VesselParams, attached: Array) -> Array:
+    """Return the rigid inertia (6, 6) of the ship and of a body (10,) carried at crane_base, about the CoG."""
+    return params.rigid_mass + attached_inertia(attached, params.crane_base - params.cog)
 
 
-@njit(cache=True)
+@njit(cache=True, forceinline=True)
+def inertia_in(level: Array, mass6: Array) -> Array:
+    """Return in level axes a rigid inertia (6, 6) about the CoG given in body axes; ``level`` (3, 3) turns to them."""
+    out = np.zeros((6, 6))
+    mass = mass6[0, 0]
+    for i in range(3):
+        out[i, i] = mass
+        a, b, c = level[i, 0], level[i, 1], level[i, 2]
+        x = a * mass6[3, 3] + b * mass6[4, 3] + c * mass6[5, 3]
+        y = a * mass6[3, 4] + b * mass6[4, 4] + c * mass6[5, 4]
+        z = a * mass6[3, 5] + b * mass6[4, 5] + c * mass6[5, 5]
+        for j in range(3):
+            out[3 + i, 3 + j] = x * level[j, 0] + y * level[j, 1] + z * level[j, 2]
+    # the first moments of mass, a vector
+    body_x, body_y, body_z = mass6[1, 5], -mass6[0, 5], mass6[0, 4]
+    x = level[0, 0] * body_x + level[0, 1] * body_y + level[0, 2] * body_z
+    y = level[1, 0] * body_x + level[1, 1] * body_y + level[1, 2] * body_z
+    z = level[2, 0] * body_x + level[2, 1] * body_y + level[2, 2] * body_z
+    out[0, 4], out[0, 5], out[1, 3], out[1, 5], out[2, 3], out[2, 4] = z, -y, -z, x, y, -x
+    out[4, 0], out[5, 0], out[3, 1], out[5, 1], out[3, 2], out[4, 2] = z, -y, -z, x, y, -x
+    return out
+
+
+@njit(cache=True, forceinline=True)
 def state_rate(
     params: VesselParams,
-    inertia: tuple[Array, Array],
+    mass6: Array,
     state: Array,
     load_b: Array,
+    weather: Array,
     water_w: Array,
     attached: Array,
 ) -> Array:
@@ -129,58 +144,73 @@ def state_rate(
     Parameters
     ----------
     params : VesselParams
-    inertia : tuple
+    mass6 : float64, shape (6, 6)
         Of `carried_inertia` with the same attached body.
     state : float64, shape (13 + r,)
     load_b : float64, shape (6,)
         Outer force and moment about the CoG, body axes [N, N m].
+    weather : float64, shape (6,)
+        Wave and wind load about the CoG, level axes (see `frames.level_axes`).
     water_w : float64, shape (3,)
         Current, world [m/s].
     attached : float64, shape (10,)
         Rigid body carried along at crane_base: its inertia and its weight are added here.
 
+    Raises
+    ------
+    ValueError
+        If the inertia is not positive definite, as with a state that is not finite.
+
     Notes
     -----
     ``(M_RB + M_attached + A_inf) nu_dot = load + weight + restoring + viscous + memory - C(nu) nu - C_A(nu_r) nu_r``
-    (Fossen 2005; Fossen 2011, section 8.3, about the CoG).
+    (Fossen 2005; Fossen 2011, section 8.3, about the CoG), in level axes, for which seakeeping theory has its loads:
+    in axes that roll with the ship, heave loads would push it sideways on average, harder than the real drift.
     """
     nu_b = state[7:13]
     rot = matrix_from_quat(state[3:7])
     roll, pitch, _ = euler_from_matrix(rot)
+    level = level_axes(rot)
     hull = params.hull
 
-    motion = np.empty((2, 6))  # of the water, of the ship in it
-    water_b, nu_rel_b = motion[0, :3], motion[1]
+    motion = np.empty((2, 6))
+    nu, relative = motion[0], motion[1]  # level axes; the second against the water
+    total = np.empty(6)
     for i in range(3):
-        water_b[i] = rot[0, i] * water_w[0] + rot[1, i] * water_w[1] + rot[2, i] * water_w[2]
-        nu_rel_b[i] = nu_b[i] - water_b[i]
-        nu_rel_b[3 + i] = nu_b[3 + i]
+        nu[i] = level[i, 0] * nu_b[0] + level[i, 1] * nu_b[1] + level[i, 2] * nu_b[2]
+        nu[3 + i] = level[i, 0] * nu_b[3] + level[i, 1] * nu_b[4] + level[i, 2] * nu_b[5]
+        total[i] = level[i, 0] * load_b[0] + level[i, 1] * load_b[1] + level[i, 2] * load_b[2] + weather[i]
+        total[3 + i] = level[i, 0] * load_b[3] + level[i, 1] * load_b[4] + level[i, 2] * load_b[5] + weather[3 + i]
+    ahead_x, ahead_y = heading_cosines(rot)
+    relative[:] = nu
+    relative[0] -= ahead_x * water_w[0] + ahead_y * water_w[1]
+    relative[1] -= ahead_x * water_w[1] - ahead_y * water_w[0]
+    relative[2] -= water_w[2]
 
     rate = np.empty(state.shape[0])
-    total = rate[7:13]
-    for i in range(6):
-        total[i] = load_b[i]
-    add_momentum_bias(total, inertia[0], nu_b)
-    add_viscous_load(total, hull, nu_rel_b)
-    add_added_mass_bias(total, hull, nu_rel_b, water_b)
-    add_memory_load(total, params.radiation, state[13:], nu_rel_b, rate[13:])
-
-    force_up, roll_moment, pitch_moment, yaw_moment = restoring_load(hull, state[2], roll, pitch)
+    inertia = inertia_in(level, mass6)
+    yaw_rate = nu[5] + np.tan(pitch) * nu[3]
+    add_momentum_bias(total, inertia, nu)
+    add_added_mass_bias(total, hull, nu, relative, yaw_rate)
+    add_viscous_load(total, hull, relative)
+    add_memory_load(total, params.radiation, state[13:], relative, rate[13:])
+    force_up, roll_moment, pitch_moment = restoring_load(hull, state[2], roll, pitch)
     weight = -attached[0] * params.gravity
     arm_x = attached[1] + params.crane_base[0] - params.cog[0]
     arm_y = attached[2] + params.crane_base[1] - params.cog[1]
     arm_z = attached[3] + params.crane_base[2] - params.cog[2]
-    up_x, up_y, up_z = rot[2, 0], rot[2, 1], rot[2, 2]
-    total[0] += (force_up + weight) * up_x
-    total[1] += (force_up + weight) * up_y
-    total[2] += (force_up + weight) * up_z
-    total[3] += roll_moment + weight * (arm_y * up_z - arm_z * up_y)
-    total[4] += pitch_moment + weight * (arm_z * up_x - arm_x * up_z)
-    total[5] += yaw_moment + weight * (arm_x * up_y - arm_y * up_x)
+    total[2] += force_up + weight
+    total[3] += roll_moment + weight * (level[1, 0] * arm_x + level[1, 1] * arm_y + level[1, 2] * arm_z)
+    total[4] += pitch_moment - weight * (level[0, 0] * arm_x + level[0, 1] * arm_y + level[0, 2] * arm_z)
 
-    solve_factorised(inertia[1], total)
+    inertia += hull.added_mass
+    if not factorise(inertia):
+        raise ValueError("ship: the inertia with added mass is not positive definite")
+    solve_factorised(inertia, total)
     for i in range(3):
         rate[i] = rot[i, 0] * nu_b[0] + rot[i, 1] * nu_b[1] + rot[i, 2] * nu_b[2]
+        rate[7 + i] = level[0, i] * total[0] + level[1, i] * total[1] + level[2, i] * total[2]
+        rate[10 + i] = level[0, i] * total[3] + level[1, i] * total[4] + level[2, i] * total[5]
     rate[3], rate[4], rate[5], rate[6] = quat_rate(state[3:7], nu_b[3:])
     return rate
 
@@ -188,29 +218,33 @@ def state_rate(
 @njit(cache=True)
 def vessel_step(
     params: VesselParams,
-    inertia: tuple[Array, Array],
+    mass6: Array,
     state: Array,
-    load_from_b: Array,
-    load_to_b: Array,
+    load_b: Array,
+    weather_from: Array,
+    weather_to: Array,
     water_w: Array,
     attached: Array,
     step_s: float,
 ) -> Array:
-    """Return the state (13 + r,) one classical Runge-Kutta step later; the load runs linearly over the step."""
+    """Return the state (13 + r,) one classical Runge-Kutta step later.
+
+    The weather's load runs linearly over the step, all else is held; see `state_rate`.
+    """
     count = state.shape[0]
-    middle = 0.5 * (load_from_b + load_to_b)
+    middle = 0.5 * (weather_from + weather_to)
     half = 0.5 * step_s
-    k1 = state_rate(params, inertia, state, load_from_b, water_w, attached)
+    k1 = state_rate(params, mass6, state, load_b, weather_from, water_w, attached)
     stage = np.empty(count)
     for i in range(count):
         stage[i] = state[i] + half * k1[i]
-    k2 = state_rate(params, inertia, stage, middle, water_w, attached)
+    k2 = state_rate(params, mass6, stage, load_b, middle, water_w, attached)
     for i in range(count):
         stage[i] = state[i] + half * k2[i]
-    k3 = state_rate(params, inertia, stage, middle, water_w, attached)
+    k3 = state_rate(params, mass6, stage, load_b, middle, water_w, attached)
     for i in range(count):
         stage[i] = state[i] + step_s * k3[i]
-    k4 = state_rate(params, inertia, stage, load_to_b, water_w, attached)
+    k4 = state_rate(params, mass6, stage, load_b, weather_to, water_w, attached)
     for i in range(count):
         stage[i] = state[i] + (step_s / 6.0) * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
     stage[3:7] /= np.sqrt(stage[3] ** 2 + stage[4] ** 2 + stage[5] ** 2 + stage[6] ** 2)

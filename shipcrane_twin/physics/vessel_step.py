@@ -42,7 +42,7 @@ def vessel_macro_step(
     thrusters: ThrusterParams,
     memory: Array,
     command: Array,
-    weather_b: Array,
+    weather_h: Array,
     crane_wrench: Array,
     attached: Array,
     water_w: Array,
@@ -56,8 +56,8 @@ def vessel_macro_step(
     memory : float64, shape (31 + 2 n + r,)
     command : float64, shape (n, 2)
         Thrust components asked for [N].
-    weather_b : float64, shape (6,)
-        Wave and wind load about the CoG at the end of the step, body axes [N, N m]; over the step it runs
+    weather_h : float64, shape (6,)
+        Wave and wind load about the CoG at the end of the step, level axes [N, N m]; over the step it runs
         linearly from the last one.
     crane_wrench : float64, shape (6,)
         Mean over the last step of crane and load on the ship at crane_base, weight included.
@@ -83,17 +83,19 @@ def vessel_macro_step(
 
     state = np.concatenate((memory[STATE], memory[water_at:]))
     steps = int(np.ceil(step_s / MICRO_STEP_MAX_S - 1e-9))
-    change = (weather_b - memory[WEATHER]) / steps
-    load_to = steady_b + memory[WEATHER]
-    inertia = carried_inertia(params, attached)
+    change = (weather_h - memory[WEATHER]) / steps
+    weather_to = memory[WEATHER]
+    mass6 = carried_inertia(params, attached)
     for _ in range(steps):
-        load_from, load_to = load_to, load_to + change
-        state = vessel_step(params, inertia, state, load_from, load_to, water_w, attached, step_s / steps)
-    rates = state_rate(params, inertia, state, steady_b + weather_b, water_w, attached)[7:13]
+        weather_from, weather_to = weather_to, weather_to + change
+        state = vessel_step(
+            params, mass6, state, steady_b, weather_from, weather_to, water_w, attached, step_s / steps
+        )
+    rates = state_rate(params, mass6, state, steady_b, weather_h, water_w, attached)[7:13]
     new[STATE] = state[:13]
     new[RATES] = rates
     new[CARRIED] = carried_mean(params, attached, memory[STATE], memory[RATES], state, rates)
-    new[WEATHER] = weather_b
+    new[WEATHER] = weather_h
     new[THRUST:water_at] = thrust.ravel()
     new[water_at:] = state[13:]
     return new

@@ -29,10 +29,10 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
     state = np.zeros(13 + radiation_count(params.radiation))
     state[2] = params.hull.design_height
     state[6] = 1.0
-    still = np.zeros(3)
+    still, no_load = np.zeros(3), np.zeros(6)
     out = np.zeros((count + 1, 6))
     load_to = np.zeros(6)
-    inertia = carried_inertia(params, NOTHING)
+    mass6 = carried_inertia(params, NOTHING)
     for k in range(count):
         load_from = load_to
         yaw = out[k, 5]
@@ -40,7 +40,7 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
         load_to = first_order.copy()
         load_to[:2] += drift[:2]
         load_to[5] += drift[2]
-        state = vessel_step(params, inertia, state, load_from, load_to, still, NOTHING, step_s)
+        state = vessel_step(params, mass6, state, no_load, load_from, load_to, still, NOTHING, step_s)
         roll, pitch, yaw = euler_from_matrix(matrix_from_quat(state[3:7]))
         out[k + 1] = np.array([state[0], state[1], state[2] - params.hull.design_height, roll, pitch, yaw])
     return out

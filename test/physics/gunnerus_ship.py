@@ -40,13 +40,13 @@ def state_at(place=(0.0, 0.0, 0.0), euler=(0.0, 0.0, 0.0), nu=(0.0,) * 6, ship=S
 
 def rate_of(ship, state, load_b, water_w, attached):
     """Rate of the state with the inertia that belongs to the attached body."""
-    return state_rate(ship, carried_inertia(ship, attached), state, load_b, water_w, attached)
+    return state_rate(ship, carried_inertia(ship, attached), state, load_b, NO_LOAD, water_w, attached)
 
 
 def held_step(ship, state, load_b, water_w, attached, step_s):
     """One step under a constant load."""
-    inertia = carried_inertia(ship, attached)
-    return vessel_step(ship, inertia, state, load_b, load_b, water_w, attached, step_s)
+    mass6 = carried_inertia(ship, attached)
+    return vessel_step(ship, mass6, state, load_b, NO_LOAD, NO_LOAD, water_w, attached, step_s)
 
 
 def alone(add, *args):

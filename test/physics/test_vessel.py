@@ -19,6 +19,7 @@ from gunnerus_ship import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from shipcrane_twin.physics.frames import matrix_from_quat
 from shipcrane_twin.physics.vessel import (
@@ -119,16 +120,19 @@ def test_motion_of_a_point_is_the_derivative_of_its_path(seed):
     np.testing.assert_allclose((after - 2.0 * here + before) / dt**2, rot @ acc_b, atol=1e-2)
 
 
-def total_inertia(ship, attached):
-    return ship.rigid_mass + ship.hull.added_mass + attached_inertia(attached, ship.crane_base - ship.cog)
+def rigid_inertia(ship, attached):
+    return ship.rigid_mass + attached_inertia(attached, ship.crane_base - ship.cog)
 
 
 def energy(ship, state, attached):
     nu, c = state[7:13], ship.hull.restoring
     rot = matrix_from_quat(state[3:7])
+    yaw = np.arctan2(rot[1, 0], rot[0, 0])
     rise = state[2] - ship.hull.design_height
     roll, pitch = np.arctan2(rot[2, 1], rot[2, 2]), -np.arcsin(rot[2, 0])
-    kinetic = 0.5 * nu @ total_inertia(ship, attached) @ nu
+    level = Rotation.from_euler("z", -yaw).as_matrix() @ rot
+    nu_level = np.concatenate((level @ nu[:3], level @ nu[3:]))  # added mass is that of a level hull
+    kinetic = 0.5 * nu @ rigid_inertia(ship, attached) @ nu + 0.5 * nu_level @ ship.hull.added_mass @ nu_level
     water = 0.5 * (c[2, 2] * rise**2 + 2.0 * c[2, 4] * rise * pitch + c[3, 3] * roll**2 + c[4, 4] * pitch**2)
     com_w = state[:3] + rot @ (ship.crane_base - ship.cog + attached[1:4])
     return kinetic, kinetic + water + attached[0] * ship.gravity * com_w[2]
@@ -159,7 +163,7 @@ def test_ship_without_water_keeps_its_momentum_and_spin():
     ship = ideal_ship(np.zeros((6, 6)), np.zeros((6, 6)))._replace(gravity=0.0)
     _, masses, points = point_masses(6)
     crane = body_of_points(masses * 30.0, points)
-    inertia = total_inertia(ship, crane)
+    inertia = rigid_inertia(ship, crane)
 
     def momentum_w(state):
         rot, body = matrix_from_quat(state[3:7]), inertia @ state[7:13]
