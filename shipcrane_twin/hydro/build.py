@@ -123,7 +123,7 @@ def build_database(config: HullBuildConfig, progress: Progress = lambda text, do
     source = (
         f"{capytaine_version()}, direct method, {len(hull[1])} panels on the port half, {len(lid[1])} on the lid at "
         f"still water; added mass and damping made symmetric (asymmetry was up to {100 * uneven:.2g} % of scale); "
-        f"conjugated from e^{{-iwt}}; drift from the far field, roll damping {config.drift_roll_damping:g} of critical, "
+        f"conjugated from e^{{-iwt}}; drift from the far field with {config.drift_roll_damping:g} of critical in roll, "
         f"energy closes within {100 * closure:.2g} %; {datetime.now(UTC):%Y-%m-%d}"
     )
     data = HydroDatabase(

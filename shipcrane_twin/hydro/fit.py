@@ -16,6 +16,8 @@ POLE_MAX = 15.0
 """Fastest pole [rad/s]; a Runge-Kutta step of 20 ms stays accurate."""
 POLE_DAMPING_MIN = 0.02
 """Slowest decay of a pole [1/s]; memory ends within a few minutes."""
+APART = 0.03
+"""Least distance of two poles, as a share of their size."""
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 """The entries of a symmetric block."""
 ROUNDS = 25
@@ -60,6 +62,9 @@ def fit_radiation(omega: Array, added_mass: Array, damping: Array, added_mass_in
 def fit_block(omega: Array, memory: Complex) -> tuple[Array, Array, Array]:
     """Return a (p, 2, 2), b (p, 2) and c (3, 3, p, 2) of one block from K(iw), shape (n, 3, 3)."""
     scale = np.sqrt(np.abs(np.diagonal(memory, axis1=1, axis2=2)).max(axis=0))
+    if not scale.any():  # a source that has no memory in these modes
+        a, b = sections(start_poles(omega))
+        return a, b, np.zeros((3, 3, *b.shape))
     scale = np.maximum(scale, 1e-6 * scale.max())
     target = memory / np.outer(scale, scale)
     target = 0.5 * (target + np.swapaxes(target, 1, 2))
@@ -79,8 +84,7 @@ def fit_poles(omega: Array, responses: Complex, weight: Array) -> Complex:
     points = np.concatenate([[0.0], omega])
     heavy = np.concatenate([[np.sqrt((weight**2).sum())], weight])
     values = np.concatenate([np.zeros((len(responses), 1)), responses], axis=1)
-    start = np.geomspace(max(0.5 * omega[0], 0.1), omega[-1], SECTIONS)
-    poles = np.concatenate([start * (-0.2 + 1j), start * (-0.2 - 1j)])
+    poles = start_poles(omega)
     for _ in range(ROUNDS):
         a, b = sections(poles)
         basis = states(points, a, b) * heavy[:, None]
@@ -98,11 +102,27 @@ def fit_poles(omega: Array, responses: Complex, weight: Array) -> Complex:
     return poles
 
 
+def start_poles(omega: Array) -> Complex:
+    """Return lightly damped poles over the frequencies, from which the fit starts."""
+    start = np.geomspace(max(0.5 * omega[0], 0.1), omega[-1], SECTIONS)
+    return np.concatenate([start * (-0.2 + 1j), start * (-0.2 - 1j)])
+
+
 def admissible(poles: Complex) -> Complex:
-    """Return poles mirrored to the stable side, slower than POLE_MAX, decaying faster than POLE_DAMPING_MIN."""
-    poles = -np.abs(poles.real) + 1j * poles.imag
+    """Return poles mirrored to the stable side, slower than POLE_MAX, decaying, and no two of them alike.
+
+    Equal poles, which data of fewer dynamics bring about, would make states that no velocity reaches.
+    """
+    poles = np.minimum(-np.abs(poles.real), -POLE_DAMPING_MIN) + 1j * poles.imag
     poles = poles * np.minimum(1.0, POLE_MAX / np.abs(poles))
-    return np.minimum(poles.real, -POLE_DAMPING_MIN) + 1j * poles.imag
+    out: list[complex] = []
+    for pole in sorted(poles[poles.imag >= 0.0].tolist(), key=abs, reverse=True):
+        apart = pole
+        while any(abs(apart - other) < APART * abs(apart) for other in out):
+            apart *= 1.0 - 2.0 * APART
+        out.append(apart)
+    upper = np.array(out)
+    return np.concatenate([upper, upper[upper.imag > 0.0].conj()])
 
 
 def sections(poles: Complex) -> tuple[Array, Array]:
