@@ -42,6 +42,8 @@ class WaveSystemConfig:
 class WavesConfig:
     """The sea and which of its loads act.
 
+    ``slow_motion_period_s`` is that of the filter that keeps the ship's own motion at wave frequency out of the place
+    and heading at which the waves act (their mean effect is the drift load); 0 takes the ship's momentary pose.
     ``kurtosis_error`` is how far the elevation's excess kurtosis may be from a Gaussian sea's zero; it
     sets the number of components, 1.5 over it.
     """
@@ -49,6 +51,7 @@ class WavesConfig:
     systems: Annotated[tuple[WaveSystemConfig, ...], Len(0, 8)]
     ramp_s: NotNegative
     kurtosis_error: Annotated[Number, Ge(0.00075), Le(0.075)]
+    slow_motion_period_s: NotNegative
     first_order: Flag
     slow_drift: Flag
 

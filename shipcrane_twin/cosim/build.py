@@ -12,7 +12,6 @@ from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.config.vessel import VesselConfig
 from shipcrane_twin.control.dp import DpParams, allocation_matrix, pid_gains
-from shipcrane_twin.cosim import weather
 from shipcrane_twin.hydro.database import HydroDatabase, moved
 from shipcrane_twin.hydro.files import load_database
 from shipcrane_twin.physics.arrays import Array
@@ -22,8 +21,6 @@ from shipcrane_twin.physics.frames import flu_matrix_from_frd
 from shipcrane_twin.physics.hull import HullParams
 from shipcrane_twin.physics.payload import WireParams
 from shipcrane_twin.physics.radiation import RadiationParams
-from shipcrane_twin.physics.sea.components import Waves
-from shipcrane_twin.physics.sea.loads import WaveLoadParams, wave_load_params
 from shipcrane_twin.physics.thrusters import ThrusterParams
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.wind import WindParams
@@ -141,23 +138,6 @@ def wind_params(scenario: Scenario) -> WindParams:
         [areas.front_area_m2, side, side * side / length, side * length]
     )
     return WindParams(table=table, scale=scale)
-
-
-def wave_params(scenario: Scenario) -> tuple[WaveLoadParams, Waves]:
-    """Return what turns the sea into loads on the hull, and the sea."""
-    data = hydro_database(scenario)
-    waves = scenario.environment.waves
-    sea = weather.sea(scenario)
-    params = wave_load_params(
-        sea,
-        data.omega,
-        data.direction,
-        data.excitation,
-        data.drift,
-        first_order=waves.first_order,
-        slow_drift=waves.slow_drift,
-    )
-    return params, sea
 
 
 def thruster_params(scenario: Scenario) -> ThrusterParams:

@@ -8,21 +8,54 @@ from shipcrane_twin.config.environment import WaveSystemConfig
 from shipcrane_twin.config.load import data_file
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.cosim import build
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.frames import yaw_from_heading
+from shipcrane_twin.physics.frames import towards_w, yaw_from_heading
 from shipcrane_twin.physics.sea import gusts as gust_models
 from shipcrane_twin.physics.sea import spectra
 from shipcrane_twin.physics.sea.components import Irregular, Regular, Waves, make_waves, realise
 from shipcrane_twin.physics.sea.current import Current, mean_factor, realise_current
 from shipcrane_twin.physics.sea.gusts import Gusts, realise_gusts
+from shipcrane_twin.physics.sea.loads import outside_shares, wave_load_params
+from shipcrane_twin.physics.weather import WeatherParams, follower
 
 SEA, GUSTS, CURRENT = 0, 1, 2
 """Streams of random numbers: each has its own, so that another sea leaves the gusts as they were."""
+
+OUTSIDE_SHARE_MAX = 0.01
+"""Share of the waves' energy outside the hull's database from which a user is warned."""
 
 
 def stream(scenario: Scenario, which: int) -> np.random.Generator:
     """Return the generator of one stream of the scenario's seed."""
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence([scenario.seed, which])))
+
+
+def weather_params(scenario: Scenario) -> WeatherParams:
+    """Return the realised weather and what turns it into loads."""
+    env = scenario.environment
+    data = build.hydro_database(scenario)
+    waves = sea(scenario)
+    loads = wave_load_params(
+        waves,
+        data.omega,
+        data.direction,
+        data.excitation,
+        data.drift,
+        first_order=env.waves.first_order,
+        slow_drift=env.waves.slow_drift,
+    )
+    return WeatherParams(
+        waves=waves,
+        wave_loads=loads,
+        gusts=gusts(scenario),
+        current=current(scenario),
+        wind=build.wind_params(scenario),
+        mean_wind=env.wind_speed_m_s,
+        wind_towards=towards_w(env.wind_direction_to_deg)[:2].copy(),
+        cog=np.array(scenario.vessel.cog_m),
+        follow=follower(env.waves.slow_motion_period_s, scenario.step_ns / 1e9),
+    )
 
 
 def sea(scenario: Scenario) -> Waves:
@@ -109,3 +142,20 @@ def current(scenario: Scenario) -> Current:
         scenario.duration_s,
         stream(scenario, CURRENT),
     )
+
+
+def table_warnings(scenario: Scenario) -> list[str]:
+    """Return what a user should know of a sea that reaches beyond the frequencies of the hull's database."""
+    data = build.hydro_database(scenario)
+    waves = sea(scenario)
+    if not len(waves.amplitude):
+        return []
+    told = []
+    sides = ("below", "held at its end"), ("above", "excitation falling with the square of the frequency, drift held")
+    for share, (side, rule) in zip(outside_shares(waves, data.omega), sides, strict=True):
+        if share > OUTSIDE_SHARE_MAX:
+            told.append(
+                f"{100 * share:.1f} % of the waves' energy lies {side} the frequencies of the hull's database "
+                f"({data.omega[0]:g} to {data.omega[-1]:g} rad/s), which is continued there: {rule}"
+            )
+    return told

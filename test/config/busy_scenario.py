@@ -58,6 +58,7 @@ def busy():
             "systems": copy.deepcopy(SEA),
             "ramp_s": 1.0,
             "kurtosis_error": 0.02,
+            "slow_motion_period_s": 2.0,
             "first_order": True,
             "slow_drift": True,
         },

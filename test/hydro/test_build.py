@@ -157,8 +157,8 @@ def test_committed_database_is_of_the_committed_hull(config):
     at = int(np.argmin(np.abs(data.omega - 1.6)))
     body = floating_body(hull, config.draught_m, data.cog, lid)
     found = solve(body, float(data.omega[at]), data.direction[::12], RHO, G)
-    np.testing.assert_allclose(np.diag(found.added_mass), np.diag(data.added_mass[at]), rtol=1e-6)
-    np.testing.assert_allclose(found.excitation, data.excitation[at, ::12], atol=1e-6 * np.abs(found.excitation).max())
+    np.testing.assert_allclose(np.diag(found.added_mass), np.diag(data.added_mass[at]), rtol=1e-4)
+    np.testing.assert_allclose(found.excitation, data.excitation[at, ::12], atol=1e-4 * np.abs(found.excitation).max())
 
 
 def test_without_capytaine_the_error_says_what_to_install(monkeypatch, config):
