@@ -74,6 +74,7 @@ def check(scenario: ScenarioName, changes: SetOption = []) -> None:  # noqa: B00
 
     found = load_scenario(scenario, changes)
     check_buildable(found)
+    warn(found)
     console.print(
         f"{found.name}: good. {found.duration_s:g} s in {found.step_count} steps of {found.macro_step_ms:g} ms, "
         f"coupling {found.coupling}, seed {found.seed}.",
@@ -122,12 +123,21 @@ def parse_speed(text: str) -> float:
     return value
 
 
+def warn(scenario: Scenario) -> None:
+    """Tell what is allowed, but better known."""
+    from shipcrane_twin.cosim.weather import table_warnings
+
+    for text in table_warnings(scenario):
+        errors.print(f"warning: {text}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+
+
 def execute(scenario: Scenario, mode: Literal["graph", "inline"], out: Path | None, record: bool) -> None:
     """Run a checked scenario with a progress line, print its summary and leave with its exit code."""
     from shipcrane_twin.cosim.check import check_buildable
     from shipcrane_twin.running.session import run_scenario
 
     check_buildable(scenario)
+    warn(scenario)
     folder = make_run_folder(scenario, out)
     columns = (
         TextColumn("{task.description}"),

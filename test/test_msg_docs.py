@@ -139,8 +139,9 @@ class TestRunningGraph:
     def test_quality_of_service_is_as_told(self, running):
         for name, seen in running.topics().items():
             if name not in NOT_OURS:
-                assert {tuple(end[1:]) for end in seen["publishers"]} == {("RELIABLE", "VOLATILE")}
-                assert "reliable, volatile" in facts(name)["QoS"]
+                durability = "TRANSIENT_LOCAL" if BY_NAME[name].rate == "once" else "VOLATILE"
+                assert {tuple(end[1:]) for end in seen["publishers"]} == {("RELIABLE", durability)}
+                assert f"reliable, {durability.lower().replace('_', ' ')}" in facts(name)["QoS"]
 
     def test_services_are_as_told(self, running):
         own = {name: types for name, types in running.services().items() if name in SERVICES or "std_srvs" in types[0]}

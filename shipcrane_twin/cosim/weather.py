@@ -68,15 +68,19 @@ def sea(scenario: Scenario) -> Waves:
     """
     env = scenario.environment
     systems = [wave_system(scenario, system) for system in env.waves.systems]
-    water = {
-        "gravity": scenario.constants.gravity_m_s2,
-        "depth": env.water_depth_m or math.inf,
-        "ramp": env.waves.ramp_s,
-    }
+    gravity, depth = scenario.constants.gravity_m_s2, env.water_depth_m or math.inf
     if not systems:
-        return make_waves(*np.zeros((4, 0)), **water)
+        calm = np.zeros(0)
+        return make_waves(calm, calm, calm, calm, gravity=gravity, depth=depth, ramp=env.waves.ramp_s)
     try:
-        return realise(systems, stream(scenario, SEA), error=env.waves.kurtosis_error, **water)
+        return realise(
+            systems,
+            stream(scenario, SEA),
+            gravity=gravity,
+            depth=depth,
+            ramp=env.waves.ramp_s,
+            error=env.waves.kurtosis_error,
+        )
     except ValueError as err:
         raise ConfigError(f"{scenario.name}: environment.waves: {err}") from None
 

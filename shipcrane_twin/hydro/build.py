@@ -146,6 +146,8 @@ def build_database(config: HullBuildConfig, progress: Progress = lambda text, do
         excitation=np.stack([solution.excitation for solution in solutions]),
         drift=drift,
         fit=fit_radiation(omega, added, damping, infinite),
+        points=hull[0],
+        panels=hull[1].astype(np.int32),
     )
     progress("done", 1.0)
     return check(data, config.name)

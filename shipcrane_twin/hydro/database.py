@@ -101,6 +101,9 @@ class HydroDatabase:
     drift : float64, shape (n, m, 3)
         Mean surge force, sway force, yaw moment per squared amplitude [N/m2, N/m].
     fit : RadiationFit
+    points, panels : float64, shape (k, 3); int32, shape (p, 4)
+        Mesh of the port half, corners from aft perpendicular, centre line, baseline [m] and four of them per
+        panel (a triangle repeats one); empty where the source has none.
     """
 
     name: str
@@ -122,6 +125,8 @@ class HydroDatabase:
     excitation: Complex
     drift: Array
     fit: RadiationFit
+    points: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
+    panels: NDArray[np.int32] = dataclasses.field(default_factory=lambda: np.zeros((0, 4), np.int32))
 
     @property
     def mass(self) -> float:
@@ -175,6 +180,8 @@ def check(data: HydroDatabase, where: str) -> HydroDatabase:
         f"wave directions are {np.array2string(np.rad2deg(data.direction), precision=1, threshold=8)} degrees",
         "rising from 0 to 180 degrees without a gap above 30 degrees",
     )
+    corners = data.panels.max(initial=-1) < len(data.points) and data.panels.min(initial=0) >= 0
+    demand(corners, f"the mesh has panels beyond its {len(data.points)} points", "corners that exist")
     check_units(data, demand)
     for name in ("added_mass_inf", "added_mass", "damping"):
         error = asymmetry(np.atleast_3d(getattr(data, name).T).T)

@@ -45,10 +45,12 @@ def save_database(path: Path, data: HydroDatabase) -> None:
         file.format_name, file.convention = FORMAT, CONVENTION
         file.ship, file.source = data.name, data.source
         for name in NUMBERS:
-            setattr(file, name, float(getattr(data, name)))
+            setattr(file, name, np.float64(getattr(data, name)))  # a Python float would become float32
         sections = data.fit.b.shape[1]
         sizes = {"xyz": 3, "mode": 6, "frequency": len(data.omega), "direction": len(data.direction)}
         sizes |= {"horizontal": 3, "block": 2, "section": sections, "two": 2, "three": 3}
+        if len(data.panels):
+            sizes |= {"point": len(data.points), "panel": len(data.panels), "corner": 4}
         for name, size in sizes.items():
             file.createDimension(name, size)
         for name, (dimensions, units) in VARIABLES.items():
@@ -57,12 +59,15 @@ def save_database(path: Path, data: HydroDatabase) -> None:
         put(file, "excitation_imag", *EXCITATION, data.excitation.imag)
         for name, dimensions in FIT.items():
             put(file, f"fit_{name}", dimensions, "SI", getattr(data.fit, name))
+        if len(data.panels):
+            put(file, "mesh_points", ("point", "xyz"), "m from aft perpendicular, centre line, baseline", data.points)
+            put(file, "mesh_panels", ("panel", "corner"), "numbers of points, port half", data.panels, "i4")
     part.replace(path)
 
 
-def put(file: Any, name: str, dimensions: tuple[str, ...], units: str, values: Any) -> None:
-    """Write one variable as float64."""
-    variable = file.createVariable(name, "f8", dimensions)
+def put(file: Any, name: str, dimensions: tuple[str, ...], units: str, values: Any, kind: str = "f8") -> None:
+    """Write one variable."""
+    variable = file.createVariable(name, kind, dimensions)
     variable[:] = values
     variable.units = units
 
@@ -83,6 +88,9 @@ def load_database(path: Path) -> HydroDatabase:
             values |= {name: float(getattr(file, name)) for name in NUMBERS}
             values["excitation"] = read(file, "excitation_real") + 1j * read(file, "excitation_imag")
             fit = RadiationFit(a=read(file, "fit_a"), b=read(file, "fit_b"), c=read(file, "fit_c"))
+            if "mesh_panels" in file.variables:
+                values["points"] = read(file, "mesh_points")
+                values["panels"] = np.array(file.variables["mesh_panels"][:], dtype=np.int32)
             name, source = file.ship.decode(), file.source.decode()
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file; give the path of a hydrodynamic database (.nc)") from None

@@ -9,7 +9,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from shipcrane_twin.record.read import Signals
-from shipcrane_twin.report import figures_crane, figures_ship
+from shipcrane_twin.report import figures_crane, figures_sea, figures_ship
 from shipcrane_twin.report.style import Plot
 
 DPI = 130
@@ -21,6 +21,7 @@ _MAKERS: tuple[Callable[[Signals, Mapping[str, Any]], Plot | None], ...] = (
     figures_crane.base_wrench,
     figures_ship.track,
     figures_ship.environment,
+    figures_sea.sea,
 )
 
 

@@ -58,6 +58,22 @@ def test_all_figures_are_drawn_and_the_environment_only_if_there_is_one(plots, t
     np.testing.assert_allclose(direction, 90.0)  # blows to the east
 
 
+def test_the_sea_is_drawn_where_the_ship_is_and_only_if_there_is_one(run, plots):
+    scenario, signals = run
+    assert "sea" not in plots
+    wave = {"amplitude": 0.5, "omega": 0.8, "number_x": 0.03, "number_y": -0.05, "phase": 0.4}
+    sea = {"/environment/sea_state": {name: np.array([value]) for name, value in wave.items()}}
+    in_waves = dict(scenario) | {"environment": {"waves": {"ramp_s": 0.0}}}
+    plot = {plot.name: plot for plot in make_figures(replace(signals, clouds=sea), in_waves)}["sea"]
+    elevation, heave = lines_of(plot)[:2]
+    t = elevation.get_xdata()
+    # the ship of the synthetic lift stays at 10.3 m north and 4.6 m east
+    expected = 0.5 * np.cos(0.8 * t - 0.03 * 4.6 + 0.05 * 10.3 + 0.4)
+    np.testing.assert_allclose(elevation.get_ydata(), expected, atol=1e-9)
+    assert heave.get_ydata().max() == pytest.approx(plots["motions"].figure.axes[2].lines[0].get_ydata().max())
+    assert "Hs 1.41 m of 1 components" in plot.caption
+
+
 def test_no_text_is_smaller_than_nine_points(plots):
     for plot in plots.values():
         png_bytes(plot.figure)  # ticks get their labels when drawn
