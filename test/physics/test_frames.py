@@ -11,7 +11,9 @@ from shipcrane_twin.physics.frames import (
     enu_from_ned,
     euler_from_matrix,
     flu_matrix_from_frd,
+    heading_cosines,
     heading_from_yaw,
+    level_axes,
     matrix_from_quat,
     quat_from_euler,
     quat_from_matrix,
@@ -155,3 +157,11 @@ def test_6x6_from_frd_to_flu_and_back_gives_the_turned_load(seed):
     matrix_flu = flu_matrix_from_frd(matrix_frd)
     np.testing.assert_allclose(matrix_flu @ (half_turn @ nu_frd), half_turn @ (matrix_frd @ nu_frd), atol=1e-12)
     np.testing.assert_array_equal(flu_matrix_from_frd(matrix_flu), matrix_frd)
+
+
+@given(roll=st.floats(-1.0, 1.0), pitch=st.floats(-1.0, 1.0), yaw=st.floats(-3.0, 3.0))
+def test_level_axes_keep_the_heading_and_nothing_else(roll, pitch, yaw):
+    rot = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
+    np.testing.assert_allclose(heading_cosines(rot), [np.cos(yaw), np.sin(yaw)], atol=1e-12)
+    turned = Rotation.from_euler("z", yaw).as_matrix() @ level_axes(rot)  # body to level to world
+    np.testing.assert_allclose(turned, rot, atol=1e-12)

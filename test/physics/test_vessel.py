@@ -7,6 +7,7 @@ import pytest
 from gunnerus_ship import (
     NO_LOAD,
     NOTHING_ATTACHED,
+    SCENARIO,
     SHIP,
     STILL_WATER,
     alone,
@@ -21,6 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from shipcrane_twin.cosim.build import thruster_params
 from shipcrane_twin.physics.frames import matrix_from_quat
 from shipcrane_twin.physics.vessel import (
     add_momentum_bias,
@@ -29,6 +31,7 @@ from shipcrane_twin.physics.vessel import (
     carried_mean,
     point_motion,
 )
+from shipcrane_twin.physics.vessel_step import vessel_at_rest, vessel_macro_step
 
 compiled = settings(deadline=None)
 seeds = st.integers(0, 9999)
@@ -270,3 +273,20 @@ def test_a_step_leaves_its_inputs_alone_and_the_quaternion_a_unit():
     new = held_step(SHIP, state, *RESTING_WATER_AND_NO_LOAD, NOTHING_ATTACHED, 0.1)
     np.testing.assert_array_equal(state, kept)
     assert np.linalg.norm(new[3:7]) == pytest.approx(1.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("step_s", [0.02, 0.05, 0.1])  # the last in two Runge-Kutta steps
+def test_weather_runs_linearly_from_one_step_to_the_next(step_s):
+    thrusters = thruster_params(SCENARIO)
+    count = len(thrusters.thrust_max)
+    memory = vessel_at_rest(SHIP, state_at()[:13], NOTHING_ATTACHED, count)
+    weather = np.array([0.0, 0.0, 1e5, 0.0, 0.0, 0.0])
+    mass = SHIP.rigid_mass[2, 2] + SHIP.hull.added_mass[2, 2]
+    gained = []
+    for _ in range(2):
+        new = vessel_macro_step(
+            SHIP, thrusters, memory, np.zeros((count, 2)), weather, NO_LOAD, NOTHING_ATTACHED, STILL_WATER, step_s
+        )
+        gained.append((new[9] - memory[9]) * mass / (1e5 * step_s))
+        memory = new
+    np.testing.assert_allclose(gained, [0.5, 1.0], atol=0.6 * step_s)
