@@ -101,9 +101,7 @@ def hold_ship(
         wrench[:3] = force_b
         wrench[3:] = rotate_to_body(rot, np.array([0.0, 0.0, out[k, 2]])) - cross(arm, force_b)
         slow, current_w, _, waved, blown = weather_step(weather, slow, odom, (k + 1) * step_s, step_s)
-        memory = vessel_macro_step(
-            ship, thrusters, memory, idle, waved + blown, wrench, nothing, current_w, step_s
-        )
+        memory = vessel_macro_step(ship, thrusters, memory, idle, waved + blown, wrench, nothing, current_w, step_s)
     return out
 
 
@@ -166,8 +164,8 @@ def drift_rows(drift: Drift, data: HydroDatabase) -> list[Row]:
         share = np.where(counts, error[..., k] / np.where(counts, np.abs(drift.expected[..., k]), 1.0), 0.0)
         i, j = np.unravel_index(int(share.argmax()), share.shape)
         note = (
-            f"{int((share > BAR).sum())} of {int(counts.sum())} cases above the bar, worst at {drift.omega[i]:.3g} rad/s "
-            f"to {np.rad2deg(drift.direction[j]):.0f} deg"
+            f"{int((share > BAR).sum())} of {int(counts.sum())} cases above the bar, worst at "
+            f"{drift.omega[i]:.3g} rad/s to {np.rad2deg(drift.direction[j]):.0f} deg"
         )
         rows.append(Row(f"mean {name} load on the held ship against the transfer function", share[i, j], BAR, "", note))
         beside = float(error[..., k].max() / largest[k])
@@ -195,7 +193,8 @@ def load_rows(data: HydroDatabase) -> list[Row]:
             error = np.abs(mean / AMPLITUDE_M**2 - expected)[counts] / np.abs(expected)[counts]
             worst[counts] = np.maximum(worst[counts], error)
             cases += int(counts.sum())
+    told = f"{cases} cases in all"
     return [
-        Row(f"mean {name} load of the kernel against the transfer function", float(value), BAR, "", f"{cases} cases in all")
+        Row(f"mean {name} load of the kernel against the transfer function", float(value), BAR, "", told)
         for name, value in zip(NAMES, worst, strict=True)
     ]

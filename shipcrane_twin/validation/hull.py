@@ -11,7 +11,7 @@ from shipcrane_twin.hydro.mesh import lid_panels
 from shipcrane_twin.hydro.panel_method import floating_body, solve
 
 VOLUME, KB, C33, C44, C55 = 493.472e3 / 1025.0, 1.591, 2.7320945e6, 7.9895465e6, 2.0532877e8
-"""R/V Gunnerus, elongated, in ShipX 4.09.6: displacement and VCB of vesselcoeff.xml, restoring matrix of retfun.re10."""
+"""R/V Gunnerus, elongated, in ShipX 4.09.6: displacement, VCB (vesselcoeff.xml), restoring matrix (retfun.re10)."""
 GM = C44 / (482026.94 * 9.81)
 """The same restoring matrix with the mass that stands beside it [m]."""
 COG = np.array([15.516, 0.0, 3.624])

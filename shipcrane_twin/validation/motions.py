@@ -12,7 +12,7 @@ from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.validation.regular_waves import motion_per_amplitude
 
 OMEGA = (0.5, 0.8, 1.05, 1.4, 1.9)
-"""Long waves, both sides of the roll resonance and on it, waves of the ship's length, heave and pitch resonance [rad/s]."""
+"""Long waves, below, at and above the roll resonance, near those of heave and pitch [rad/s]."""
 DIRECTION_STEP_DEG = 20
 AMPLITUDE_M, STEP_S = 0.01, 0.05
 """A small wave: linear theory has no drag, and no drifting away."""
@@ -63,5 +63,5 @@ def motion_rows(motions: Motions) -> list[Row]:
     for mode, name in enumerate(MODES):
         i, j = np.unravel_index(int(error[..., mode].argmax()), error.shape[:2])
         note = f"{cases} cases, worst at {motions.omega[i]:.3g} rad/s to {np.rad2deg(motions.direction[j]):.0f} deg"
-        rows.append(Row(f"{name} in regular waves, time against frequency domain", float(error[i, j, mode]), BAR, "", note))
+        rows.append(Row(f"{name}, time against frequency domain", float(error[i, j, mode]), BAR, "", note))
     return rows
