@@ -82,6 +82,7 @@ def encode_cloud(topic: Topic, time_ns: int, values: Array) -> bytes:
     writer.count(size * points)
     writer.count(size * points)
     writer.data += values.astype("<f8").tobytes() + b"\1"  # all points are valid
+    writer.align(4)  # as the middleware hands it on
     return bytes(writer.data)
 
 

@@ -55,7 +55,9 @@ def test_rosbags_reads_what_the_template_writes_and_writes_the_same_bytes(topic)
         assert message.header.frame_id == topic.frame
     if topic.type == ODOMETRY:
         assert message.child_frame_id == topic.child_frame
-    assert bytes(STORE.serialize_cdr(message, topic.type)) == raw
+    theirs = bytes(STORE.serialize_cdr(message, topic.type))
+    assert raw.startswith(theirs)
+    assert raw[len(theirs) :] == bytes(-len(theirs) % 4)
 
 
 @pytest.mark.ros
