@@ -12,6 +12,7 @@ from shipcrane_twin.hydro.build import read_hull
 from shipcrane_twin.hydro.compare import Row
 from shipcrane_twin.hydro.database import HydroDatabase, moved
 from shipcrane_twin.hydro.figures import draw
+from shipcrane_twin.hydro.rao import raos
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.validation import drift, hull, motions, pictures, sea, veres, words
@@ -82,12 +83,14 @@ def all_sections(
 
     progress("motions in regular waves")
     moving = motions.regular_wave_motions(params, data, extent.motion_omega)
-    picture = Picture(pictures.save(pictures.regular_waves(moving), folder, "regular_waves"), words.MOTIONS_CAPTION)
+    linear = raos(data, params.rigid_mass, params.hull.damping)
+    figure = pictures.regular_waves(moving, linear, data)
+    picture = Picture(pictures.save(figure, folder, "regular_waves"), words.MOTIONS_CAPTION)
     sections.append(Section("Motions in regular waves", words.MOTIONS, motions.motion_rows(moving), [picture]))
 
     progress("mean drift")
     held = drift.held_drift(drift.make_rig(SCENARIO), extent.drift_omega, extent.drift_step_deg)
-    picture = Picture(pictures.save(pictures.held_drift(held), folder, "held_drift"), words.DRIFT_CAPTION)
+    picture = Picture(pictures.save(pictures.held_drift(held, data), folder, "held_drift"), words.DRIFT_CAPTION)
     rows = drift.load_rows(data) + drift.drift_rows(held, data)
     sections.append(Section("Mean drift", words.DRIFT, rows, [picture, *drawn["drift"]]))
 

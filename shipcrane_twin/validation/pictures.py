@@ -9,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 from shipcrane_twin.hydro.compare import MODES
+from shipcrane_twin.hydro.database import Complex, HydroDatabase
 from shipcrane_twin.hydro.figure_style import COLOURS, DPI, INK, PALE, SMALL, blank, finish, grid, legend_below
 from shipcrane_twin.validation import sea
 from shipcrane_twin.validation.drift import NAMES, Drift
@@ -30,21 +31,27 @@ def save(figure: Figure, folder: Path, name: str) -> Path:
     return path
 
 
+def nearest(data: HydroDatabase, omega: float) -> int:
+    """Return the row of a frequency in the database's tables."""
+    return int(np.argmin(np.abs(data.omega - omega)))
+
+
 def directions(axes: Axes) -> None:
     """Mark a direction axis from following to head sea."""
     axes.set_xlim(-3.0, 183.0)
     axes.set_xticks(range(0, 181, 30))
 
 
-def regular_waves(motions: Motions) -> Figure:
-    """Draw motions over direction: lines of the frequency domain, dots of the time domain."""
+def regular_waves(motions: Motions, linear: Complex, data: HydroDatabase) -> Figure:
+    """Draw motions over direction: dots of the time domain, lines of the frequency domain (linear, (n, m, 6))."""
     figure, all_axes = grid("Motions in regular waves: frequency domain (lines), run's own kernels in time (dots)")
     angle = np.rad2deg(motions.direction)
     for mode, axes in enumerate(all_axes):
         unit = 1.0 if mode < 3 else 180.0 / np.pi
         for row, (omega, colour) in enumerate(zip(motions.omega, COLOURS, strict=False)):
-            line, dots = (unit * np.abs(table[row, :, mode]) for table in motions[:1:-1])
-            axes.plot(angle, line, color=colour, linewidth=1.2, label=f"{omega:.3g} rad/s")
+            line = unit * np.abs(linear[nearest(data, omega), :, mode])
+            dots = unit * np.abs(motions.time_domain[row, :, mode])
+            axes.plot(np.rad2deg(data.direction), line, color=colour, linewidth=1.2, label=f"{omega:.3g} rad/s")
             axes.plot(angle, dots, "o", color=colour, markersize=MARK)
         finish(axes, MODES[mode], "[m/m]" if mode < 3 else "[deg/m]", TOWARD)
         directions(axes)
@@ -52,15 +59,16 @@ def regular_waves(motions: Motions) -> Figure:
     return figure
 
 
-def held_drift(drift: Drift) -> Figure:
+def held_drift(drift: Drift, data: HydroDatabase) -> Figure:
     """Draw mean loads over direction: lines of the transfer function, dots of the held ship."""
     figure, all_axes = grid("Mean drift load: transfer function (lines), what holds the ship (dots)", rows=1)
     angle = np.rad2deg(drift.direction)
     drawn = list(range(1, len(drift.omega), 2)) or [0]
     for k, axes in enumerate(all_axes):
         for row, colour in zip(drawn, COLOURS, strict=False):
-            line, dots = drift.expected[row, :, k] / 1e3, drift.measured[row, :, k] / 1e3
-            axes.plot(angle, line, color=colour, linewidth=1.2, label=f"{drift.omega[row]:.3g} rad/s")
+            omega, dots = drift.omega[row], drift.measured[row, :, k] / 1e3
+            line = data.drift[nearest(data, omega), :, k] / 1e3
+            axes.plot(np.rad2deg(data.direction), line, color=colour, linewidth=1.2, label=f"{omega:.3g} rad/s")
             axes.plot(angle, dots, "o", color=colour, markersize=MARK)
         finish(axes, NAMES[k], "[kN/m²]" if k < 2 else "[kN m/m²]", TOWARD)
         directions(axes)

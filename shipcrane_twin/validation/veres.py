@@ -1,6 +1,9 @@
 """The ship against VERES's model of it, and VERES's model, imported, against VERES's own motions."""
 
+import dataclasses
 from pathlib import Path
+
+import numpy as np
 
 from shipcrane_twin.hydro.compare import Row, compare_with_veres, validate_import
 from shipcrane_twin.hydro.database import HydroDatabase, moved
@@ -11,14 +14,18 @@ from shipcrane_twin.physics.arrays import Array
 
 
 def read_veres(folder: Path) -> tuple[HydroDatabase, Array]:
-    """Return VERES's database without a state-space model, which no comparison here needs, and its mass (6, 6).
+    """Return VERES's database and its mass (6, 6).
+
+    It gets no state-space model, which no comparison here needs: the model's residues are not numbers.
 
     Raises
     ------
     ConfigError
         If a file is missing or cannot be understood.
     """
-    return import_veres(folder, fit=lambda *_tables: no_fit()), read_extras(folder).mass
+    data = import_veres(folder, name="VERES", fit=lambda *_tables: no_fit())
+    nothing = dataclasses.replace(data.fit, c=np.full_like(data.fit.c, np.nan))
+    return dataclasses.replace(data, fit=nothing), read_extras(folder).mass
 
 
 def veres_rows(data: HydroDatabase, veres: HydroDatabase, mass6: Array) -> list[Row]:
@@ -28,5 +35,6 @@ def veres_rows(data: HydroDatabase, veres: HydroDatabase, mass6: Array) -> list[
 
 def import_rows(folder: Path, veres: HydroDatabase, mass6: Array) -> list[Row]:
     """Rebuild motions from the imported added mass, damping, stiffness and loads, and compare with the file's own."""
+    # what it says of the state-space model goes, see `read_veres`
     rows = validate_import(veres, mass6, read_motions(folder, veres))
     return [row for row in rows if "against the file's own" in row.what]
