@@ -8,8 +8,8 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "shipcrane_twin"
 ASK = (
-    "import numpy as np; from shipcrane_twin.physics.vessel import momentum_bias;"
-    "print(momentum_bias(np.eye(6), np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))[0])"
+    "import numpy as np; from shipcrane_twin.physics.vessel import add_momentum_bias; load = np.zeros(6);"
+    "add_momentum_bias(load, np.eye(6), np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])); print(load[0])"
 )
 
 
@@ -26,10 +26,10 @@ def test_a_change_in_one_kernel_reaches_those_it_is_compiled_into(tmp_path):
     copy = tmp_path / "shipcrane_twin"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
     before = bias(tmp_path)
-    frames = copy / "physics" / "frames.py"
-    text = frames.read_text()
-    changed = text.replace("a[1] * b[2] - a[2] * b[1]", "7.0 + a[1] * b[2] - a[2] * b[1]")
+    algebra = copy / "physics" / "linalg.py"
+    text = algebra.read_text()
+    changed = text.replace("(matrix[i, 0] * x[0]", "(7.0 + matrix[i, 0] * x[0]")
     assert changed != text
-    frames.write_text(changed)
+    algebra.write_text(changed)
     assert bias(tmp_path) == pytest.approx(before + 7.0)
     assert len(list((copy / "__pycache__").glob("kernels-*"))) == 1
