@@ -8,12 +8,14 @@ A signal is a flat float64 array. Its columns by message type:
 - WrenchStamped: force (3), torque (3);
 - InertiaStamped: mass, CoM (3), xx xy xz yy yz zz;
 - JointState: position, velocity and effort of all joints, those that the topic carries;
+- Imu: quaternion x y z w (4), angular velocity (3), linear acceleration (3);
 - PointCloud2: one row of named columns per point, any number of points.
 """
 
 from dataclasses import dataclass
 from typing import Literal
 
+IMU = "sensor_msgs/msg/Imu"
 ODOMETRY = "nav_msgs/msg/Odometry"
 POSE = "geometry_msgs/msg/PoseStamped"
 TWIST = "geometry_msgs/msg/TwistStamped"
@@ -25,7 +27,7 @@ CLOUD = "sensor_msgs/msg/PointCloud2"
 CLOCK = "rosgraph_msgs/msg/Clock"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
-WIDTHS = {ODOMETRY: 13, POSE: 7, TWIST: 6, ACCEL: 6, WRENCH: 6, INERTIA: 10}
+WIDTHS = {IMU: 10, ODOMETRY: 13, POSE: 7, TWIST: 6, ACCEL: 6, WRENCH: 6, INERTIA: 10}
 JOINT_FIELDS = ("position", "velocity", "effort")
 
 Rate = Literal["step", "telemetry", "once", "irregular"]

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 CLOCK = "rosgraph_msgs/msg/Clock"
+IMU = "sensor_msgs/msg/Imu"
 ODOMETRY = "nav_msgs/msg/Odometry"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 CLOUD = "sensor_msgs/msg/PointCloud2"
@@ -25,6 +26,7 @@ _POSE = ("px", "py", "pz", "qx", "qy", "qz", "qw")
 _TWIST = ("vx", "vy", "vz", "wx", "wy", "wz")
 COLUMNS: dict[str, tuple[str, ...]] = {
     CLOCK: (),
+    IMU: ("qx", "qy", "qz", "qw", "wx", "wy", "wz", "ax", "ay", "az"),
     ODOMETRY: _POSE + _TWIST,
     "geometry_msgs/msg/PoseStamped": _POSE,
     "geometry_msgs/msg/TwistStamped": _TWIST,
@@ -45,6 +47,7 @@ def _paths(*groups: tuple[str, tuple[str, ...]]) -> tuple[str, ...]:
 # Where the generic decoder finds the same numbers, in the order of COLUMNS.
 _FIELDS: dict[str, tuple[str, ...]] = {
     CLOCK: (),
+    IMU: _paths(("orientation", _XYZW), ("angular_velocity", _XYZ), ("linear_acceleration", _XYZ)),
     ODOMETRY: _paths(
         ("pose.pose.position", _XYZ),
         ("pose.pose.orientation", _XYZW),
@@ -140,6 +143,10 @@ def decode_block(msgtype: str, rows: NDArray[np.uint8]) -> Block | None:
             walk.doubles(_COVARIANCE, keep=False)
             walk.doubles(6)
             walk.doubles(_COVARIANCE, keep=False)
+        elif msgtype == IMU:
+            for count in (4, 3, 3):
+                walk.doubles(count)
+                walk.doubles(9, keep=False)
         elif msgtype == JOINT_STATE:
             names = tuple(walk.string() for _ in range(walk.count()))
             for _ in range(3):

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcrane_twin.cosim.time import stamp_parts
-from shipcrane_twin.cosim.topics import CLOCK, CLOUD, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
+from shipcrane_twin.cosim.topics import CLOCK, CLOUD, IMU, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
 from shipcrane_twin.physics.arrays import Array
 
 ENCAPSULATION = b"\x00\x01\x00\x00"
@@ -117,6 +117,10 @@ class Template:
             twist = writer.doubles(6)
             writer.doubles(36)
             blocks = [(pose, 7), (twist, 6)]
+        elif topic.type == IMU:
+            for number in (4, 3, 3):  # orientation, angular velocity, linear acceleration, each with its covariance
+                blocks.append((writer.doubles(number), number))
+                writer.doubles(9)
         elif topic.type not in (CLOCK, CLOUD):
             blocks = [(writer.doubles(topic.width), topic.width)]
         self.topic = topic
