@@ -12,9 +12,10 @@ from shipcrane_twin.config.crane import (
     WinchConfig,
     WireConfig,
 )
+from shipcrane_twin.config.dp import DpConfig
 from shipcrane_twin.config.environment import WAVE_KEYS, EnvironmentConfig
 from shipcrane_twin.config.settings import Number, Text, Whole, settings
-from shipcrane_twin.config.vessel import DpConfig, VesselConfig
+from shipcrane_twin.config.vessel import VesselConfig
 
 NS_PER_MS = 1_000_000
 NS_PER_S = 1_000_000_000
@@ -53,11 +54,19 @@ class OperationConfig:
 
 @settings
 class EventConfig:
-    """Something that happens at one time."""
+    """Something that happens at one time.
+
+    ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it does from
+    then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is position, gyro, mru or wind; it
+    drops out or freezes. ``power_limit``: ``share`` of the total power is left. The fault none repairs.
+    """
 
     label: Text
     at_s: NotNegative
-    event: Literal["release_payload"]
+    event: Literal["release_payload", "thruster_fault", "sensor_fault", "power_limit"]
+    which: Text | None = None
+    fault: Literal["none", "failed", "frozen", "limited", "runaway", "drop_out"] | None = None
+    share: Annotated[Number, Ge(0), Le(1)] | None = None
 
 
 @settings

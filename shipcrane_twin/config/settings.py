@@ -14,7 +14,7 @@ from pydantic_core import ErrorDetails
 T = TypeVar("T")
 
 UNIT = re.compile(
-    r"_(s|ms|ns|hz|m|mm|m2|m3|m_s|m_s2|kg|t|kg_m2|kg_m3|n|kn|n_m|deg|rad|rad_s|rad_s2|deg_s|deg_s2|pa|gpa)$"
+    r"_(s|ms|ns|hz|m|mm|m2|m3|m_s|m_s2|kg|t|kg_m2|kg_m3|n|kn|n_m|deg|rad|rad_s|rad_s2|deg_s|deg_s2|pa|gpa|kw|rpm|rpm_s)$"
 )
 
 

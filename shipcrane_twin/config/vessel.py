@@ -1,9 +1,9 @@
-"""Settings of the ship: hull, wind areas, thrusters and dynamic positioning."""
+"""Settings of the ship: hull, wind areas, thrusters."""
 
 from typing import Annotated, Literal, TypeVar
 
 import numpy as np
-from annotated_types import Ge, Gt, Le, Len
+from annotated_types import Ge, Gt, Le, Len, Lt
 from pydantic import AfterValidator
 
 from shipcrane_twin.config.settings import Flag, Matrix6, Number, Text, Vector3, settings
@@ -73,12 +73,29 @@ class WindAreasConfig:
 
 @settings
 class ThrusterConfig:
-    """One thruster; a tunnel thruster pushes sideways only."""
+    """One thruster; a tunnel thruster pushes sideways only, to both sides.
+
+    ``thrust_max_n`` is what reaches the ship at full power, the ship at rest. Each row of ``forbidden_deg`` is centre and
+    half width of a sector into which the thrust must not point, anticlockwise from forward. The advance numbers
+    J = V / (n D) are those at which the propeller gives no thrust and takes no torque.
+    """
 
     name: Text
     position_m: Vector3
-    thrust_max_n: Positive
     azimuthing: Flag
+    diameter_m: Positive
+    thrust_max_n: Positive
+    power_max_kw: Positive
+    shaft_speed_max_rpm: Positive
+    thrust_deduction: Annotated[Number, Ge(0), Lt(1)]
+    zero_thrust_advance: Positive
+    zero_torque_advance: Positive
+    shaft_accel_max_rpm_s: Positive
+    shaft_lag_s: Positive
+    rundown_lag_s: Positive
+    azimuth_rate_max_deg_s: Positive
+    azimuth_lag_s: Positive
+    forbidden_deg: tuple[tuple[Number, Positive], ...] = ()
 
 
 @settings
@@ -105,32 +122,6 @@ class VesselConfig:
     hull: HullConfig
     ballast: BallastConfig
     wind_areas: WindAreasConfig
-    thruster_time_constant_s: Positive
+    power_total_max_kw: Positive
     thrusters: Annotated[tuple[ThrusterConfig, ...], Len(1)]
     initial: InitialConfig
-
-
-@settings
-class SetpointConfig:
-    """Wanted position of the CoG and heading."""
-
-    north_m: Number
-    east_m: Number
-    heading_deg: Number
-
-
-@settings
-class DpConfig:
-    """Dynamic positioning; three values are surge, sway, yaw."""
-
-    enabled_at_s: NotNegative
-    settled_after_s: NotNegative
-    period_ms: Positive
-    natural_period_s: tuple[Positive, Positive, Positive]
-    damping_ratio: tuple[Positive, Positive, Positive]
-    load_max: tuple[Positive, Positive, Positive]
-    reference_speed_max_m_s: Positive
-    reference_accel_max_m_s2: Positive
-    reference_turn_max_deg_s: Annotated[Number, Gt(0), Le(10)]
-    reference_turn_accel_max_deg_s2: Annotated[Number, Gt(0), Le(10)]
-    setpoint: SetpointConfig
