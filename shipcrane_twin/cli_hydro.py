@@ -102,7 +102,7 @@ def show(
     from shipcrane_twin.hydro.build import hull_mesh, read_hull
     from shipcrane_twin.hydro.figures import draw
     from shipcrane_twin.hydro.files import load_database
-    from shipcrane_twin.hydro.rao import mass_matrix
+    from shipcrane_twin.hydro.rao import mass_matrix, natural_periods, usual_mass
 
     data = load_database(file)
     out.mkdir(parents=True, exist_ok=True)
@@ -117,6 +117,9 @@ def show(
     table.add_row("displaces", f"{data.volume:.2f} m3, {data.mass / 1e3:.1f} t")
     table.add_row("frequencies", f"{len(data.omega)}, {data.omega[0]:g} to {data.omega[-1]:g} rad/s")
     table.add_row("directions", f"{len(data.direction)}, every {np.rad2deg(np.diff(data.direction).max()):g} deg")
+    periods = natural_periods(data, usual_mass(data) if mass6 is None else mass6)
+    told = ", ".join(f"{name} {period:.2f} s" for name, period in periods.items())
+    table.add_row("natural periods", told if hull else f"{told} (usual radii of gyration; --hull has the ship's own)")
     table.add_row("pictures", ", ".join(str(path) for path in pictures))
     console.print(table, soft_wrap=True)
 
@@ -128,7 +131,7 @@ def validate(
         Path | None, typer.Option(metavar="FOLDER", help="ShipX/VERES files of the ship to compare with.")
     ] = None,
     panels: Annotated[
-        bool, typer.Option("--panels", help="Also the convergence of the panels (extra: hydro); some minutes.")
+        bool, typer.Option("--panels", help="Also the convergence of the panels (extra: hydro); a minute.")
     ] = False,
 ) -> None:
     """Check sea, hull and their loads; write the page with all figures; exit code 3 if one misses its bar."""

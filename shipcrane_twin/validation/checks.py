@@ -51,7 +51,7 @@ def all_sections(
     veres_folder : Path, optional
         ShipX/VERES files of the same ship; without it the comparisons with them are left out.
     panels : bool
-        Whether to compute the convergence of the panels, which takes Capytaine and some minutes.
+        Whether to compute the convergence of the panels, which takes Capytaine and a minute.
     progress : callable
         Called with what is being done.
     extent : Extent
@@ -76,7 +76,7 @@ def all_sections(
     drawn = database_pictures(folder, data, params, reference)
     sections = [Section("Hull", words.HULL, hull.hull_rows(data), drawn["hull"])]
     if panels:
-        progress("panels: twice as many, some minutes")
+        progress("panels: twice as many, a minute")
     rows = hull.panel_rows(read_hull(hull_file)) if panels else []
     sections.append(Section("Panels", words.PANELS if panels else words.NO_PANELS, rows, []))
     sections.append(Section("State space", words.STATE_SPACE, hull.fit_rows(data), drawn["memory"]))

@@ -49,7 +49,7 @@ def panel_rows(config: HullBuildConfig) -> list[Row]:
     """Compare added mass, damping and wave loads with those of a mesh of twice as many panels.
 
     Five frequencies from 0.5 to 4 rad/s, five wave directions; the largest change of each entry as a share of its
-    largest value over frequencies and directions. Some minutes.
+    largest value over frequencies and directions. About a minute.
 
     Raises
     ------

@@ -11,7 +11,7 @@ Added mass, damping and wave loads of the mesh against one with twice as many pa
 frequencies from 0.5 to 4 rad/s and five directions, as a share of the largest value over both."""
 
 NO_PANELS = """\
-Left out of this page; `./twin hydro validate --panels` computes it with Capytaine in some minutes."""
+Left out of this page; `./twin hydro validate --panels` computes it with Capytaine in a minute."""
 
 STATE_SPACE = """\
 The radiation memory `K(iw) = B + i w (A - A_inf)` of the run (eight poles for surge, heave and pitch, eight for

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from imported_ships import COG, G, RHO, a_ship, box_loads, mass_of
+from imported_ships import COG, RHO, G, a_ship, box_loads, mass_of
 from scipy.io import netcdf_file
 
 from shipcrane_twin.config.settings import ConfigError
@@ -43,7 +43,10 @@ WRONG = {
     "no depth": ({"depth": lambda v: 0.0}, r"depth is 0, expected a positive number"),
     "load in kN": ({"excitation": lambda v: 1e3 * v}, r"heave load in long waves is .* times C33, .*SI units \(N/m\)"),
     "mass in tonnes": ({"added_mass_inf": lambda v: 1e-3 * v}, r"A33 is .* times the ship's mass, expected SI units"),
-    "stiffness in kN/m": ({"restoring": lambda v: 1e-3 * v}, r"makes a waterplane of .* expected SI units \(N/m, m3, m\)"),
+    "stiffness in kN/m": (
+        {"restoring": lambda v: 1e-3 * v},
+        r"makes a waterplane of .* expected SI units \(N/m, m3, m\)",
+    ),
     "asymmetric added mass": ({"added_mass": lopsided}, r"added_mass is asymmetric by .* %.*within 3 %"),
     "asymmetric damping": ({"damping": lopsided}, r"damping is asymmetric"),
     "frequency in Hz, falling": ({"omega": lambda v: v[::-1]}, r"40 frequencies are not positive and rising"),

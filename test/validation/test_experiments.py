@@ -91,7 +91,9 @@ def test_mean_loads_of_the_whole_ship(rig, measured):
     measured(f"drift: {sway.what}", 100.0 * sway.value, 100.0 * sway.bar, "%")
     for name in drift.NAMES:
         row = rows[f"the same, {name}, largest difference over the largest mean load"]
-        measured(f"drift: error of the mean {name} load on the held ship over the largest", 100.0 * row.value, 10.0, "%")
+        measured(
+            f"drift: error of the mean {name} load on the held ship over the largest", 100.0 * row.value, 10.0, "%"
+        )
 
 
 def test_a_drift_of_the_wrong_size_is_seen(rig):
