@@ -11,7 +11,6 @@ from shipcrane_twin.config.load import data_file
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.config.vessel import VesselConfig
-from shipcrane_twin.control.dp import DpParams, allocation_matrix, pid_gains
 from shipcrane_twin.hydro.database import HydroDatabase, moved
 from shipcrane_twin.hydro.files import load_database
 from shipcrane_twin.physics.arrays import Array
@@ -21,7 +20,6 @@ from shipcrane_twin.physics.frames import flu_matrix_from_frd
 from shipcrane_twin.physics.hull import HullParams
 from shipcrane_twin.physics.payload import WireParams
 from shipcrane_twin.physics.radiation import RadiationParams
-from shipcrane_twin.physics.thrusters import ThrusterParams
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.wind import WindParams
 
@@ -138,39 +136,6 @@ def wind_params(scenario: Scenario) -> WindParams:
         [areas.front_area_m2, side, side * side / length, side * length]
     )
     return WindParams(table=table, scale=scale)
-
-
-def thruster_params(scenario: Scenario) -> ThrusterParams:
-    """Return the thrusters, positions seen from the CoG."""
-    vessel = scenario.vessel
-    return ThrusterParams(
-        position=np.array([t.position_m for t in vessel.thrusters]) - np.array(vessel.cog_m),
-        thrust_max=np.array([t.thrust_max_n for t in vessel.thrusters]),
-        azimuthing=np.array([float(t.azimuthing) for t in vessel.thrusters]),
-        time_constant=vessel.thruster_time_constant_s,
-    )
-
-
-def dp_params(scenario: Scenario) -> DpParams:
-    """Return the DP controller's constants; gains from natural periods and damping ratios."""
-    dp = scenario.dp
-    vessel, thrusters = vessel_params(scenario), thruster_params(scenario)
-    mass6 = vessel.rigid_mass + vessel.hull.added_mass
-    stiffness, damping, integral = pid_gains(
-        np.diag(mass6)[[0, 1, 5]], np.array(dp.natural_period_s), np.array(dp.damping_ratio)
-    )
-    turn, turn_accel = np.deg2rad([dp.reference_turn_max_deg_s, dp.reference_turn_accel_max_deg_s2])
-    speed, accel = dp.reference_speed_max_m_s, dp.reference_accel_max_m_s2
-    return DpParams(
-        stiffness=stiffness,
-        damping=damping,
-        integral=integral,
-        load_max=np.array(dp.load_max),
-        rate_max=np.array([speed, speed, turn]),
-        accel_max=np.array([accel, accel, turn_accel]),
-        allocation=allocation_matrix(thrusters.position, thrusters.azimuthing),
-        period=dp.period_ms * 1e-3,
-    )
 
 
 def symmetric(values: tuple[float, ...]) -> Array:

@@ -14,6 +14,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
     "environment": ("/vessel/odom",),
     "vessel": (
         "/environment/current",
+        "/environment/wind",
         "/environment/wave_wrench",
         "/environment/wind_wrench",
         "/crane/base_wrench",

@@ -19,7 +19,7 @@ from shipcrane_twin.physics.sea.gusts import Gusts, realise_gusts
 from shipcrane_twin.physics.sea.loads import outside_shares, wave_load_params
 from shipcrane_twin.physics.weather import WeatherParams, follower
 
-SEA, GUSTS, CURRENT = 0, 1, 2
+SEA, GUSTS, CURRENT, SENSORS = 0, 1, 2, 3
 """Streams of random numbers: each has its own, so that another sea leaves the gusts as they were."""
 
 OUTSIDE_SHARE_MAX = 0.01

@@ -1,17 +1,19 @@
 """One macro step of the ship with thrusters, weather and the crane's feedback, in a single kernel call.
 
-Memory, float64 (31 + 2 n + r,): state of the rigid body (13, see `physics.vessel`), rates of the body velocities
+Memory, float64 (31 + 4 n + r,): state of the rigid body (13, see `physics.vessel`), rates of the body velocities
 at the end of the last step (6), mean load of the carried body over the last step (6), weather load at its end (6),
-thrust of n thrusters (n, 2), memory of the water (r, see `physics.radiation`).
+azimuth and shaft speed of n thrusters (n, 2), their thrust (n,) and power (n,), memory of the water (r, see
+`physics.radiation`).
 """
 
 import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.frames import cross
+from shipcrane_twin.physics.frames import cross, matrix_from_quat, rotate_to_body
+from shipcrane_twin.physics.propeller import PropulsionParams
+from shipcrane_twin.physics.propulsion import Faults, propulsion_step
 from shipcrane_twin.physics.radiation import radiation_count
-from shipcrane_twin.physics.thrusters import ThrusterParams, thruster_load, thruster_step
 from shipcrane_twin.physics.vessel import (
     VesselParams,
     carried_inertia,
@@ -30,7 +32,7 @@ MICRO_STEP_MAX_S = 0.05
 @njit(cache=True)
 def vessel_at_rest(params: VesselParams, state: Array, attached: Array, thrusters: int) -> Array:
     """Return the memory of a ship at rest in ``state`` (13,) that carries a body (10,); no weather yet."""
-    memory = np.zeros(THRUST + 2 * thrusters + radiation_count(params.radiation))
+    memory = np.zeros(THRUST + 4 * thrusters + radiation_count(params.radiation))
     memory[STATE] = state
     memory[CARRIED] = carried_mean(params, attached, state, memory[RATES], state, memory[RATES])
     return memory
@@ -39,9 +41,11 @@ def vessel_at_rest(params: VesselParams, state: Array, attached: Array, thruster
 @njit(cache=True)
 def vessel_macro_step(
     params: VesselParams,
-    thrusters: ThrusterParams,
+    thrusters: PropulsionParams,
     memory: Array,
     command: Array,
+    fault: Faults,
+    share: Array,
     weather_h: Array,
     crane_wrench: Array,
     attached: Array,
@@ -52,10 +56,12 @@ def vessel_macro_step(
 
     Parameters
     ----------
-    params, thrusters : VesselParams, ThrusterParams
-    memory : float64, shape (31 + 2 n + r,)
+    params, thrusters : VesselParams, PropulsionParams
+    memory : float64, shape (31 + 4 n + r,)
     command : float64, shape (n, 2)
-        Thrust components asked for [N].
+        Azimuth [rad] and shaft speed [rev/s] asked for.
+    fault, share : int64, float64, shape (n,)
+        See `propulsion_step`.
     weather_h : float64, shape (6,)
         Wave and wind load about the CoG at the end of the step, level axes [N, N m]; over the step it runs
         linearly from the last one.
@@ -74,11 +80,14 @@ def vessel_macro_step(
     equations hold it for the present step.
     """
     new = np.empty_like(memory)
-    count = thrusters.thrust_max.shape[0]
-    water_at = THRUST + 2 * count
-    thrust, thrust_mean = thruster_step(thrusters, memory[THRUST:water_at].reshape((count, 2)), command, step_s)
+    count = command.shape[0]
+    force_at, power_at, water_at = THRUST + 2 * count, THRUST + 3 * count, THRUST + 4 * count
+    before = memory[THRUST:force_at].reshape((count, 2))
+    relative = memory[7:10] - rotate_to_body(matrix_from_quat(memory[3:7]), water_w)
+    through_water = np.array([relative[0], relative[1], memory[12]])
+    driven = propulsion_step(thrusters, before, command, through_water, fault, share, step_s)
     crane = crane_wrench - memory[CARRIED]
-    steady_b = thruster_load(thrusters, thrust_mean) + crane
+    steady_b = driven.load_b + crane
     steady_b[3:] += cross(params.crane_base - params.cog, crane[:3])
 
     state = np.concatenate((memory[STATE], memory[water_at:]))
@@ -96,7 +105,9 @@ def vessel_macro_step(
     new[RATES] = rates
     new[CARRIED] = carried_mean(params, attached, memory[STATE], memory[RATES], state, rates)
     new[WEATHER] = weather_h
-    new[THRUST:water_at] = thrust.ravel()
+    new[THRUST:force_at] = driven.state.ravel()
+    new[force_at:power_at] = driven.thrust
+    new[power_at:water_at] = driven.power
     new[water_at:] = state[13:]
     return new
 

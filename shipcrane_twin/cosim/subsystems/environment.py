@@ -23,7 +23,6 @@ class Environment:
 
     def __init__(self, scenario: Scenario) -> None:
         self._params = weather.weather_params(scenario)
-        self._telemetry_every = scenario.telemetry_every
         self._step_ns, self._step_s = scenario.step_ns, seconds(scenario.step_ns)
         rest = at_rest(scenario)
         self._odom = vessel_outputs(vessel_at_rest(rest.params, rest.vessel, rest.inertia, 0), rest.params.cog)[0]
@@ -43,11 +42,9 @@ class Environment:
     def _outputs(self, k: int, odom: Array) -> Signals:
         time_s = seconds(k * self._step_ns)
         self._slow, current, wind, waves, blown = weather_step(self._params, self._slow, odom, time_s, self._step_s)
-        out = {
+        return {
             "/environment/current": np.concatenate((current, np.zeros(3))),
+            "/environment/wind": np.concatenate((wind, np.zeros(3))),
             "/environment/wave_wrench": waves,
             "/environment/wind_wrench": blown,
         }
-        if k % self._telemetry_every == 0:
-            out["/environment/wind"] = np.concatenate((wind, np.zeros(3)))
-        return out
