@@ -26,7 +26,7 @@ BAR, JUDGED_FROM = 0.05, 0.10
 
 OMEGA = (0.8, 1.05, 1.4, 1.65, 1.9, 2.2, 2.5)
 DIRECTION_STEP_DEG = 15
-AMPLITUDE_M, RAMP_S, SETTLE_S, CYCLES = 0.02, 40.0, 700.0, 20
+AMPLITUDE_M, RAMP_S, SETTLE_S, CYCLES = 0.01, 40.0, 700.0, 20
 """A small wave keeps the mean offset, and with it the change of heading, small."""
 
 PERIOD_S, DAMPING_RATIO = 160.0, 0.7

@@ -31,7 +31,7 @@ MOTIONS_CAPTION = "Amplitudes of both ways; roll is largest near 1.05 rad/s, its
 DRIFT = """\
 First the load alone: what the kernel gives in a regular wave, averaged over a period, against the transfer
 function. Then the whole ship through the chain of a run (weather with its slow pose, hull, memory, idle
-thrusters; macro steps of 20 ms), in regular waves of 0.02 m, held by soft springs of 160 s natural period in
+thrusters; macro steps of 20 ms), in regular waves of 0.01 m, held by soft springs of 160 s natural period in
 surge, sway and yaw: the mean of what the springs hold against the transfer function, wherever that is above 10 %
 of its largest value.
 
@@ -84,12 +84,15 @@ large part of it, and there water gets out of the way forward and aft, which sec
 - Added mass in pitch and yaw weights the ends with the square of their distance, so it suffers most: A66 is
   about half to two thirds of VERES's, A55 as little as two thirds. A lower A55 makes the natural period of
   pitch shorter. A22 is lower for the same reason, by up to a fifth.
-- Damping falls much faster towards long waves in three dimensions: a body that is small beside the wave sends
-  rings in all directions, and the strips' waves to both sides cancel less. So B22, B44, B55 and B66 are a small
-  share of VERES's at 12 s and come closer at 5 s. Where it matters, at resonance, heave's and pitch's damping
+- Damping falls much faster towards long waves in three dimensions: a body that is small beside the wave
+  hardly makes waves, an endless section still does. So B22, B44, B55 and B66 are a small share of VERES's at
+  12 s, B33 less than half, and come closer at 5 s. Where it matters, at resonance, heave's and pitch's damping
   are compared in the pictures; roll's is mostly viscous and a setting.
 - Surge loads have no place in strip theory (VERES adds them by another method) and yaw loads weight the ends:
   F1 and F6 differ by up to a third at 6 s and more where they are small.
+- Mean drift is each code's own: ours is from the far field. In sway they are alike; in surge
+  VERES has two to three times ours in head and following waves near 1.5 rad/s, and ours goes on where VERES's falls
+  to zero in short waves, which a ship this blunt reflects.
 - Motions of heave and pitch differ less than the coefficients, because in waves longer than the ship stiffness
   and the Froude-Krylov load dominate, which both have alike. VERES's own extra viscous damping is left out on
   both sides here.
