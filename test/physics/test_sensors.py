@@ -21,6 +21,7 @@ from shipcrane_twin.physics.sensors import (
     sensor_params,
     sensor_start,
     sensor_step,
+    vertical_acceleration,
 )
 from shipcrane_twin.physics.wind import WindParams, wind_load
 
@@ -213,6 +214,7 @@ def test_motion_unit_matches_differences_of_a_tumbling_path():
     acc_w = (point[2] - 2.0 * point[1] + point[0]) / h**2
     np.testing.assert_allclose(got[5:], rot.inv().apply(acc_w + [0.0, 0.0, G]), atol=1e-4)
     np.testing.assert_allclose(got[2:5], omega(t))
+    assert vertical_acceleration(got, G) == pytest.approx(acc_w[2], abs=1e-4)
     assert MRU_KINDS.size == got.size
 
 
@@ -228,7 +230,8 @@ def test_wind_sensor_meets_the_ships_own_speed():
 
 def test_wind_sensors_direction_is_the_one_of_the_coefficients():
     """Wind from ahead pushes back, with the load that the true velocity of the air gives."""
-    table = np.column_stack((np.linspace(0.0, np.pi, 19), np.cos(np.linspace(0.0, np.pi, 19)) * -0.5, *np.zeros((3, 19))))
+    angles = np.linspace(0.0, np.pi, 19)
+    table = np.column_stack((angles, -0.5 * np.cos(angles), *np.zeros((3, 19))))
     wind = WindParams(table, np.array([10.0, 10.0, 10.0, 10.0]))
     speed, direction = relative_wind(odometry(euler=(0.0, 0.0, 0.4)), np.array([-5.0, -1.0, 0.0]), np.zeros(3))
     air = -speed * np.array([np.cos(direction), np.sin(direction)])
