@@ -75,23 +75,19 @@ def horizontal(matrix6: Array) -> Array:
 def passive_observer(
     inertia: Array,
     damping: Array,
-    k1: Array,
-    k2: Array,
-    k3: Array,
-    k4: Array,
+    gains: Array,
     wave_frequency: Array,
     wave_damping: Array,
     bias_time_constant: Array,
 ) -> LinearObserver:
-    """Return the passive observer of Fossen and Strand (1999) with its gains and heading frozen.
+    """Return the passive observer of `control.observer` with gains and heading frozen.
 
     Parameters
     ----------
     inertia, damping : float64, shape (3, 3)
-    k1 : float64, shape (3, 2)
-        Gains of the wave model: on its integral state, on the wave motion itself.
-    k2, k3, k4 : float64, shape (3,)
-        Gains of pose [1/s], bias [N/(m s), ..] and velocity [N/m, N m/rad].
+    gains : float64, shape (3, 5)
+        For each axis K1 of the wave model's integral state [1] and of the wave motion [1/s], K2 of the pose [1/s],
+        K3 of the bias [N/(m s)] and K4 of the velocity [N/m].
     wave_frequency, wave_damping : float64, shape (3,)
         [rad/s], relative damping of the wave model.
     bias_time_constant : float64, shape (3,)
@@ -105,7 +101,7 @@ def passive_observer(
     """
     one, none = np.eye(3), np.zeros((3, 3))
     inverse = np.linalg.inv(inertia)
-    gain = np.vstack([np.diag(k1[:, 0]), np.diag(k1[:, 1]), np.diag(k2), np.diag(k3), inverse @ np.diag(k4)])
+    gain = np.vstack([*(np.diag(gains[:, k]) for k in range(4)), inverse @ np.diag(gains[:, 4])])
     model = np.block(
         [
             [none, one, none, none, none],
@@ -156,12 +152,12 @@ def closed_loop(
     against thrust that is lost or a ship that is heavier than the DP believes.
     """
     if not thruster_lag > 0.0 or delay < 0.0:
-        raise ValueError(f"DP loop: lag {thruster_lag:g} s, delay {delay:g} s; expected a positive lag, no negative delay")
+        raise ValueError(f"DP loop: lag {thruster_lag:g} s, delay {delay:g} s; expected a positive lag, delay >= 0")
     a, b, c = open_loop(inertia, damping, controller, thruster_lag, delay, observer)
-    eigenvalues = np.linalg.eigvals(a + b @ c)
+    eigenvalues = np.linalg.eigvals(a + b @ c).astype(np.complex128)
     eigenvalues = eigenvalues[np.argsort(-eigenvalues.real, kind="stable")]
     slowest = -float(eigenvalues[0].real)
-    loops, margins = np.empty((3, len(OMEGA)), complex), []
+    loops, margins = np.empty((3, len(OMEGA)), np.complex128), []
     for axis in range(3):
         others = np.eye(3)
         others[axis, axis] = 0.0
@@ -169,8 +165,17 @@ def closed_loop(
         column = np.broadcast_to(b[:, axis].astype(complex)[:, None], (len(OMEGA), len(a), 1))
         loops[axis] = -(np.linalg.solve(pencil, column)[..., 0] @ c[axis])
         margins.append(loop_margins(loops[axis]))
-    table = np.array(margins).T
-    return LoopReport(eigenvalues, 1.0 / slowest if slowest > 0.0 else np.inf, *table, loops)
+    crossover, phase_margin, up, down, peak = np.array(margins).T
+    return LoopReport(
+        eigenvalues=eigenvalues,
+        slowest_s=1.0 / slowest if slowest > 0.0 else np.inf,
+        crossover=crossover,
+        phase_margin_deg=phase_margin,
+        gain_up_db=up,
+        gain_down_db=down,
+        sensitivity_peak=peak,
+        loop=loops,
+    )
 
 
 def open_loop(
@@ -181,7 +186,7 @@ def open_loop(
     delay: float,
     observer: LinearObserver | None,
 ) -> tuple[Array, Array, Array]:
-    """Return A, B and C of the loop, cut between thrusters and ship: from the load on the ship to that of the thrusters.
+    """Return A, B and C of the loop cut between thrusters and ship: from the load on the ship to the thrusters' load.
 
     States: pose, velocity, thrust, load of the integrator (3 each), delay (6, if there is one), observer.
     """

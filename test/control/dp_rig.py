@@ -60,8 +60,8 @@ def move(pose, velocity_b, load_b, dt=PERIOD_S, mass=MASS, drag=DRAG, steps=4):
 def held_ship(params, duration, reference=None, disturbance_w=None, feed=None, limit=None, pose=STILL, drag=DRAG):
     """Poses (n, 3) and demands (n, 3) of a ship under control.
 
-    `reference(k)`, `disturbance_w(t)` and `feed(t)` (wind, crane; body) give what drives it; `limit(demand, state)` says
-    which load the thrusters give and which they report.
+    `reference(k)`, `disturbance_w(t)` and `feed(t)` (wind, crane; body) give what drives it; `limit(demand, state)`
+    says which load the thrusters give and which they report.
     """
     state, velocity, pose = controller_start(), np.zeros(3), np.array(pose, float)
     given = np.zeros(3)

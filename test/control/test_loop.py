@@ -11,8 +11,10 @@ from shipcrane_twin.control.loop import (
     LinearObserver,
     closed_loop,
     horizontal,
+    loop_margins,
     passive_observer,
 )
+from shipcrane_twin.control.observer import passive_gains, passive_params
 from shipcrane_twin.cosim.build import dp_params, hydro_database, thruster_params, vessel_params
 
 LAG_S = 2.0
@@ -74,6 +76,15 @@ def test_margins_are_where_the_closed_loop_becomes_unstable():
     assert slowest(1.0, 0.99 * delays.min()) < 0.0 < slowest(1.0, 1.01 * delays.min())
 
 
+def test_gain_margin_counts_only_crossings_behind_the_origin():
+    # phase -180 degrees at w = pi / 0.9, -360 degrees at twice that, where the gain is higher
+    crossover, _, up, down, peak = loop_margins(0.1 * OMEGA * np.exp(-0.9j * OMEGA))
+    assert up == pytest.approx(-20.0 * np.log10(0.1 * np.pi / 0.9), abs=1e-3)
+    assert down == -np.inf
+    assert np.isnan(crossover)
+    assert peak > 1.0 / (1.0 - 0.1 * np.pi / 0.9) - 0.01
+
+
 def test_loop_in_time_decays_as_its_slowest_eigenvalue_says():
     params = controller()
     slow = closed_loop(MASS, DRAG, params, 1e-3).slowest_s
@@ -108,27 +119,31 @@ def test_observer_that_is_fast_changes_nothing(shipped):
     np.testing.assert_allclose(observed.loop[:, slow], direct.loop[:, slow], rtol=0.01)
 
 
-def example_observer(inertia, damping, frequency=0.8, cutoff=1.2):
-    """The gains of Fossen and Strand (1999) for a wave frequency [rad/s]."""
-    wave, notch, model = np.full(3, frequency), 1.0, 0.1
-    k1 = np.column_stack([-2.0 * (notch - model) * cutoff / wave * wave / wave, 2.0 * wave * (notch - model)])
-    mass = np.diag(inertia)
-    return passive_observer(
+def observer_of(inertia, damping, wave_period=8.0):
+    """The passive observer with the wave filter at a period [s]."""
+    wave, same = np.full(3, 2.0 * np.pi / wave_period), np.ones(3)
+    params = passive_params(
         inertia,
         damping,
-        k1,
-        cutoff * wave,
-        0.002 * mass,
-        0.1 * mass,
-        wave,
-        np.full(3, model),
-        np.full(3, 1000.0),
+        0.1,
+        wave_frequency=wave,
+        wave_damping=0.1 * same,
+        notch_damping=same,
+        cutoff_ratio=1.2 * same,
+        bias_period_s=100.0 * same,
+        bias_damping=same,
+        bias_time_constant_s=1000.0 * same,
+        sample_period_s=same,
+        lost_after_s=10.0,
+        return_s=10.0,
     )
+    gains = passive_gains(params, wave)
+    return passive_observer(inertia, damping, gains, wave, params.wave_damping, params.bias_time_constant)
 
 
 def test_separation_eigenvalues_are_those_of_loop_and_observer(shipped):
     inertia, damping, gains, lag = shipped
-    observer = example_observer(inertia, damping)
+    observer = observer_of(inertia, damping)
     # without a bias state the estimates are those of a pure copy of the ship, and the two do not move each other
     observer = observer._replace(
         a=np.delete(np.delete(observer.a, [9, 10, 11], 0), [9, 10, 11], 1),
@@ -142,14 +157,30 @@ def test_separation_eigenvalues_are_those_of_loop_and_observer(shipped):
         assert np.abs(found - value).min() < 1e-6
 
 
-def test_observer_notch_takes_the_wave_frequency_out_of_the_loop(shipped):
+@pytest.mark.parametrize("wave_period", [6.0, 10.0])
+def test_wave_filter_takes_its_frequency_out_of_the_loop_and_costs_phase(shipped, wave_period, measured):
     inertia, damping, gains, lag = shipped
-    observed = closed_loop(inertia, damping, gains, lag, observer=example_observer(inertia, damping))
-    assert observed.eigenvalues[0].real < 0.0
-    direct = closed_loop(*shipped)
-    at = int(np.argmin(np.abs(OMEGA - 0.8)))
-    assert np.all(np.abs(observed.loop[:, at]) < np.abs(direct.loop[:, at]))
+    observed = closed_loop(inertia, damping, gains, lag, 0.5, observer_of(inertia, damping, wave_period))
+    direct = closed_loop(*shipped, 0.5)
+    at = int(np.argmin(np.abs(OMEGA - 2.0 * np.pi / wave_period)))
+    assert np.all(np.abs(observed.loop[:, at]) < 0.3 * np.abs(direct.loop[:, at]))
     assert np.all(observed.phase_margin_deg < direct.phase_margin_deg)
+    name = f"DP loop with the wave filter at {wave_period:g} s"
+    measured(f"{name}: largest real part", observed.eigenvalues[0].real, 0.0, "1/s")
+    measured(f"{name}: phase margin, degrees below 20", 20.0 - observed.phase_margin_deg.min(), 0.0, "deg")
+    measured(f"{name}: gain margin, dB below 4", 4.0 - observed.gain_up_db.min(), 0.0, "dB")
+
+
+def test_observers_zero_is_the_wave_frequency(shipped):
+    inertia, damping, _, _ = shipped
+    observer, omega = observer_of(inertia, damping), 2.0 * np.pi / 8.0
+
+    def pose_estimate(w):
+        return (observer.c[:3] @ np.linalg.solve(1j * w * np.eye(15) - observer.a, observer.b_measured))[0, 0]
+
+    # the notch is as deep as the damping of the wave model over its own allows
+    assert abs(pose_estimate(omega)) < 0.15
+    assert abs(pose_estimate(0.01)) == pytest.approx(1.0, abs=0.05)
 
 
 @pytest.mark.parametrize(("lag", "delay"), [(0.0, 0.0), (-1.0, 0.0), (1.0, -0.1), (np.nan, 0.0)])
