@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dp_plant import BIAS_W, COMMON, DAMPING, DT, MASS, NONE, PASSIVE, PEAK, passive, ship_path, turn
+from dp_plant import BIAS_W, COMMON, DAMPING, DT, MASS, NONE, PASSIVE, PEAK, passive, ship_path
 from scipy.linalg import solve_continuous_are
 
 from shipcrane_twin.control.observer import passive_gains, passive_start, passive_step
@@ -13,9 +13,9 @@ SLOW = 2.0 * np.pi / PASSIVE["bias_period_s"][0]
 
 
 def filter_matrices(gains, omega, time_constant):
-    """Error dynamics of (xi, its rate, pose, bias) of one axis, driven by the velocity's error; and its output,
+    """Error dynamics of one axis: matrix of (xi, its rate, pose, bias), effect of the velocity's error, and output.
 
-    the load that the observer gives back to the velocity's error: K4 e - bias error.
+    The output is the load that the observer gives back to the velocity's error: K4 e less the bias's error.
     """
     model = np.zeros((4, 4))
     model[0, 1], model[1, 0], model[1, 1] = 1.0, -(omega**2), -2.0 * ZETA * omega

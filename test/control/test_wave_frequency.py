@@ -8,6 +8,7 @@ from shipcrane_twin.control.wave_frequency import (
     frequency_params,
     frequency_start,
     frequency_step,
+    heave_step,
     resonator_step,
     wave_frequency,
 )
@@ -82,6 +83,21 @@ def test_resonator_rings_as_its_equation_says():
     for _ in range(3000):
         value, rate = resonator_step(value, rate, 2.0, 0.7, 0.3, DT)
     assert (value, rate) == pytest.approx((2.0, 0.0), abs=1e-9)
+
+
+def test_heave_is_the_acceleration_twice_integrated():
+    omega, corner = 0.8, 0.1
+    t = np.arange(0.0, 600.0, DT)
+    state, seen = np.zeros(2), []
+    for accel in 0.02 - omega**2 * 0.5 * np.cos(omega * t):  # an offset that must not run away
+        state = heave_step(state, accel, corner, DT)
+        seen.append(state[0])
+    late = np.array(seen[4000:]) - 0.02 / corner**2
+    # closed form of the filter at this frequency: the wave, a little turned
+    gain = -(omega**2) / (corner**2 - omega**2 + 2j * 0.5**0.5 * corner * omega)
+    assert abs(abs(gain) - 1.0) < 0.01
+    np.testing.assert_allclose(late, 0.5 * np.real(gain * np.exp(1j * omega * t[4000:])), atol=0.03)
+    np.testing.assert_array_equal(heave_step(state, np.nan, corner, DT), state)
 
 
 @pytest.mark.parametrize(
