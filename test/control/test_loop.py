@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from dp_rig import DRAG, MASS, controller, held_at, held_ship
+from dp_rig import DRAG, MASS, PERIOD_S, STILL, UNKNOWN, controller, held_at, held_ship, move
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.control.controller import ControllerParams
+from shipcrane_twin.control.controller import ControllerParams, controller_start, controller_update
 from shipcrane_twin.control.loop import (
     OMEGA,
     LinearObserver,
@@ -14,7 +14,8 @@ from shipcrane_twin.control.loop import (
     loop_margins,
     passive_observer,
 )
-from shipcrane_twin.control.observer import passive_gains, passive_params
+from shipcrane_twin.control.observer import passive_gains, passive_params, passive_start, passive_step
+from shipcrane_twin.control.observer_model import observer_pose, observer_velocity
 from shipcrane_twin.cosim.build import dp_params, hydro_database, thruster_params, vessel_params
 
 LAG_S = 2.0
@@ -119,13 +120,13 @@ def test_observer_that_is_fast_changes_nothing(shipped):
     np.testing.assert_allclose(observed.loop[:, slow], direct.loop[:, slow], rtol=0.01)
 
 
-def observer_of(inertia, damping, wave_period=8.0):
-    """The passive observer with the wave filter at a period [s]."""
+def passive_with(inertia, damping, wave_period, sample_period=1.0):
+    """Parameters of the passive observer with the wave filter at a period [s], and that frequency (3,)."""
     wave, same = np.full(3, 2.0 * np.pi / wave_period), np.ones(3)
     params = passive_params(
         inertia,
         damping,
-        0.1,
+        PERIOD_S,
         wave_frequency=wave,
         wave_damping=0.1 * same,
         notch_damping=same,
@@ -133,12 +134,46 @@ def observer_of(inertia, damping, wave_period=8.0):
         bias_period_s=100.0 * same,
         bias_damping=same,
         bias_time_constant_s=1000.0 * same,
-        sample_period_s=same,
+        sample_period_s=sample_period * same,
         lost_after_s=10.0,
         return_s=10.0,
     )
+    return params, wave
+
+
+def observer_of(inertia, damping, wave_period=8.0, sample_period=1.0):
+    """The same, linear."""
+    params, wave = passive_with(inertia, damping, wave_period, sample_period)
     gains = passive_gains(params, wave)
     return passive_observer(inertia, damping, gains, wave, params.wave_damping, params.bias_time_constant)
+
+
+def growth(params, axis, factor):
+    """Error after a step at 300 to 400 s over that at 200 to 300 s; the ship gets `factor` times the thrust."""
+    observer, wave = passive_with(MASS, DRAG, 8.0, PERIOD_S)
+    seen, state = passive_start(observer, STILL), controller_start()
+    pose, velocity, thrust = np.zeros(3), np.zeros(3), np.zeros(3)
+    given = np.where(np.arange(3) == axis, factor, 1.0)
+    goal, errors = 0.05 * (np.arange(3) == axis), []
+    for k in range(4000):
+        seen = passive_step(observer, seen, pose, thrust, wave)
+        estimate = observer_pose(seen), observer_velocity(seen)
+        reference = held_at(goal * (k > 0))
+        state, demand = controller_update(params, state, True, reference, *estimate, STILL, STILL, UNKNOWN)
+        thrust = demand + (thrust - demand) * np.exp(-PERIOD_S / LAG_S)
+        pose, velocity = move(pose, velocity, given * thrust)
+        errors.append(abs(pose[axis] - goal[axis]))
+    return max(errors[3000:]) / max(errors[2000:3000])
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+def test_gain_margin_is_that_of_controller_and_observer_in_time(axis):
+    params = controller(load_max=np.full(3, 1e12))
+    observer = observer_of(MASS, DRAG, sample_period=PERIOD_S)
+    margin = closed_loop(MASS, DRAG, params, LAG_S, PERIOD_S, observer).gain_up_db[axis]
+    limit = 10.0 ** (margin / 20.0)
+    assert growth(params, axis, 0.93 * limit) < 0.8
+    assert growth(params, axis, 1.07 * limit) > 1.2
 
 
 def test_separation_eigenvalues_are_those_of_loop_and_observer(shipped):
