@@ -24,7 +24,7 @@ from shipcrane_twin.physics.wind import WindParams, wind_load
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Beaufort's numbers 0 to 11 in DNV-ST-0111 (2021), section 2: wind [m/s], Hs [m], Tp [s], current [m/s]. The period of
+# Beaufort's numbers 0 to 11 in DNV-ST-0111: wind [m/s], Hs [m], Tp [s], current [m/s]. The period of
 # number 0, which has no waves, is that of number 1.
 WIND_SPEED = np.array([0.0, 1.5, 3.4, 5.4, 7.9, 10.7, 13.8, 17.1, 20.7, 24.4, 28.4, 32.6])
 WAVE_HEIGHT = np.array([0.0, 0.1, 0.4, 0.8, 1.3, 2.1, 3.1, 4.2, 5.7, 7.4, 9.5, 12.1])
