@@ -9,7 +9,7 @@ from numba import njit
 
 from shipcrane_twin.control.allocation_setup import AllocationParams
 from shipcrane_twin.control.azimuth_sectors import TURN, arc_place
-from shipcrane_twin.control.quadratic_program import solve_qp
+from shipcrane_twin.control.quadratic_program import IntArray, solve_qp
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import wrap_angle
 from shipcrane_twin.physics.linalg import solve_in_place
@@ -31,10 +31,7 @@ def static_thrust(params: AllocationParams, load: Array, share: Array, piece: Ar
     if params.method != 0:
         return limited_pseudo_inverse(params, load, share), piece.copy()
     count = share.shape[0]
-    number = np.ones(count, dtype=np.int64)
-    for i in range(count):
-        if params.azimuthing[i] != 0.0 and share[i] > 0.0:
-            number[i] = max(1, int(np.sum(params.pieces[i, :, 1] > 0.0)))
+    number = piece_numbers(params, share)
     best, best_piece, best_cost = np.zeros(2 * count), np.zeros(count), np.inf
     found = False
     for choice in range(number.prod()):
@@ -55,6 +52,16 @@ def static_thrust(params: AllocationParams, load: Array, share: Array, piece: Ar
         if number[i] == 1 and piece[i] >= 0.0:
             best_piece[i] = piece[i]
     return best, best_piece
+
+
+@njit(cache=True)
+def piece_numbers(params: AllocationParams, share: Array) -> IntArray:
+    """Return how many pieces each thruster (n,) may choose from."""
+    number = np.ones(share.shape[0], dtype=np.int64)
+    for i in range(share.shape[0]):
+        if params.azimuthing[i] != 0.0 and share[i] > 0.0:
+            number[i] = max(1, int(np.sum(params.pieces[i, :, 1] > 0.0)))
+    return number
 
 
 @njit(cache=True)

@@ -214,6 +214,16 @@ def predict_covariance(params: EkfParams, jacobian: Array, covariance: Array, om
             for k in range(N):
                 total += half[i, k] * jacobian[j, k]
             out[i, j] = total
+    add_process_noise(params, out, omega)
+    for i in range(N):
+        for j in range(i):
+            out[j, i] = out[i, j]
+    return out
+
+
+@njit(cache=True)
+def add_process_noise(params: EkfParams, out: Array, omega: Array) -> None:
+    """Add Q to the lower triangle of a covariance (15, 15), in place."""
     for i in range(3):
         out[6 + i, 6 + i] += params.bias_noise[i]
         for j in range(i + 1):
@@ -224,10 +234,6 @@ def predict_covariance(params: EkfParams, jacobian: Array, covariance: Array, om
         out[9 + i, 9 + i] += variance * (softness - a * a * softness - b * b)
         out[12 + i, 9 + i] -= variance * (a * c * softness + b * d)
         out[12 + i, 12 + i] += variance * (1.0 - c * c * softness - d * d)
-    for i in range(N):
-        for j in range(i):
-            out[j, i] = out[i, j]
-    return out
 
 
 @njit(cache=True)

@@ -152,12 +152,12 @@ def closed_loop(
     against thrust that is lost or a ship that is heavier than the DP believes.
     """
     if not thruster_lag > 0.0 or delay < 0.0:
-        raise ValueError(f"DP loop: lag {thruster_lag:g} s, delay {delay:g} s; expected a positive lag, no negative delay")
+        raise ValueError(f"DP loop: lag {thruster_lag:g} s, delay {delay:g} s; expected a positive lag, delay >= 0")
     a, b, c = open_loop(inertia, damping, controller, thruster_lag, delay, observer)
-    eigenvalues = np.linalg.eigvals(a + b @ c)
+    eigenvalues = np.linalg.eigvals(a + b @ c).astype(np.complex128)
     eigenvalues = eigenvalues[np.argsort(-eigenvalues.real, kind="stable")]
     slowest = -float(eigenvalues[0].real)
-    loops, margins = np.empty((3, len(OMEGA)), complex), []
+    loops, margins = np.empty((3, len(OMEGA)), np.complex128), []
     for axis in range(3):
         others = np.eye(3)
         others[axis, axis] = 0.0
@@ -165,8 +165,17 @@ def closed_loop(
         column = np.broadcast_to(b[:, axis].astype(complex)[:, None], (len(OMEGA), len(a), 1))
         loops[axis] = -(np.linalg.solve(pencil, column)[..., 0] @ c[axis])
         margins.append(loop_margins(loops[axis]))
-    table = np.array(margins).T
-    return LoopReport(eigenvalues, 1.0 / slowest if slowest > 0.0 else np.inf, *table, loops)
+    crossover, phase_margin, up, down, peak = np.array(margins).T
+    return LoopReport(
+        eigenvalues=eigenvalues,
+        slowest_s=1.0 / slowest if slowest > 0.0 else np.inf,
+        crossover=crossover,
+        phase_margin_deg=phase_margin,
+        gain_up_db=up,
+        gain_down_db=down,
+        sensitivity_peak=peak,
+        loop=loops,
+    )
 
 
 def open_loop(
@@ -177,7 +186,7 @@ def open_loop(
     delay: float,
     observer: LinearObserver | None,
 ) -> tuple[Array, Array, Array]:
-    """Return A, B and C of the loop, cut between thrusters and ship: from the load on the ship to that of the thrusters.
+    """Return A, B and C of the loop cut between thrusters and ship: from the load on the ship to the thrusters' load.
 
     States: pose, velocity, thrust, load of the integrator (3 each), delay (6, if there is one), observer.
     """

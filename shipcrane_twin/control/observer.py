@@ -105,6 +105,9 @@ def passive_params(
     notch = per_axis("notch_damping", notch_damping, 0.0, 2.0)
     if np.any(notch < waves):
         raise ValueError(f"observer: notch_damping {notch} is below wave_damping {waves}: the filter would add waves")
+    samples = np.maximum(per_axis("sample_period_s", sample_period_s, 0.0), period)
+    if not np.all(samples < lost_after_s):
+        raise ValueError(f"observer: lost_after_s {lost_after_s} is below sample_period_s {samples}: every fix is late")
     horizontal = 0.5 * (model.mass[0, 0] + model.mass[1, 1])
     return PassiveParams(
         model=model,
@@ -117,7 +120,7 @@ def passive_params(
         bias_frequency=2.0 * np.pi / per_axis("bias_period_s", bias_period_s, 0.0),
         bias_damping=per_axis("bias_damping", bias_damping, 0.0, 2.0),
         bias_time_constant=per_axis("bias_time_constant_s", bias_time_constant_s, 0.0),
-        sample_period=np.maximum(per_axis("sample_period_s", sample_period_s, 0.0), period),
+        sample_period=samples,
     )
 
 

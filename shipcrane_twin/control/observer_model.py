@@ -75,7 +75,7 @@ def ship_model(mass: Array, damping: Array, period: float) -> ShipModel:
         raise ValueError("observer: mass must be symmetric positive definite; give the rigid body's with added mass")
     if not period > 0.0:
         raise ValueError(f"observer: period is {period} s, it must be > 0")
-    inverse = np.linalg.inv(mass)
+    inverse: Array = np.linalg.inv(mass).astype(np.float64)
     block = np.zeros((6, 6))
     block[:3, :3] = -inverse @ damping * period
     block[:3, 3:] = inverse * period

@@ -116,10 +116,7 @@ def take_up(
     gap = bound - np.sum(normal * z)
     added = 0.0
     while True:
-        share = np.zeros(n)
-        for k in range(n):
-            share += basis[k] * normal[k]
-        free = np.sum(share[q:] ** 2)
+        share, free = split_normal(basis, normal, q)
         effect = back_substitute(upper, share, q)
         # the longest step along which no active inequality begins to pull
         partial, leaving = np.inf, -1
@@ -132,7 +129,8 @@ def take_up(
             return -1
         if free > DEPENDENT:
             for k in range(n):
-                z[k] += step * np.sum(basis[k, q:] * share[q:])
+                for j in range(q, n):
+                    z[k] += step * basis[k, j] * share[j]
             gap -= step * free
         push[:q] -= step * effect[:q]
         added += step
@@ -154,9 +152,12 @@ def most_violated(
     size = 10.0
     for value in z:
         size = max(size, abs(value))
+    taken = np.zeros(normal.shape[0], dtype=np.bool_)
+    for i in active:
+        taken[i] = True
     worst, found, side = -1e-13 * size, -1, 1.0
     for i in range(normal.shape[0]):
-        if np.any(active == i):
+        if taken[i]:
             continue
         margin = -bound[i]
         for j in range(z.shape[0]):
@@ -167,6 +168,19 @@ def most_violated(
         elif margin < worst:
             worst, found = margin, i
     return found, side
+
+
+@njit(cache=True)
+def split_normal(basis: Array, normal: Array, q: int) -> tuple[Array, float]:
+    """Return a normal (n,) in the basis, and the squared length of its part outside the q active ones."""
+    n = normal.shape[0]
+    share, free = np.zeros(n), 0.0
+    for k in range(n):
+        for j in range(n):
+            share[j] += basis[k, j] * normal[k]
+    for j in range(q, n):
+        free += share[j] ** 2
+    return share, free
 
 
 @njit(cache=True)

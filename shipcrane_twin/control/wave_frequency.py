@@ -3,7 +3,8 @@
 State, float64 (7,): slow part of the signal and its rate (2), resonator and its rate (2), mean squares of the
 resonator and of its rate (2), frequency [rad/s].
 
-The position fix is no good signal: with 0.5 m of noise it hides decimetres of wave motion. The MRU's pitch is.
+The position fix is no good signal: with 0.5 m of noise it hides decimetres of wave motion. Heave amidships follows
+the waves; pitch and roll answer short waves and their own resonance more, so they read high in a long sea.
 """
 
 from typing import NamedTuple
@@ -101,8 +102,8 @@ def frequency_step(params: FrequencyParams, state: Array, signal: float) -> Arra
     # the resonator's gain at its own frequency is 1 / (2 z): the floor is meant for the signal
     floor = (params.floor / (2.0 * params.damping_ratio)) ** 2
     wanted = np.sqrt((new[5] + floor * params.nominal**2) / (new[4] + floor))
-    omega = state[6] + share * (wanted - state[6])
-    new[6] = min(params.highest, max(params.lowest, omega))
+    wanted = min(params.highest, max(params.lowest, wanted))
+    new[6] = state[6] + share * (wanted - state[6])
     return new
 
 
@@ -114,6 +115,20 @@ def resonator_step(
     quarter = (0.5 * omega * dt) ** 2 + damping_ratio * omega * dt
     after = ((1.0 - quarter) * rate + dt * omega * omega * (drive - value)) / (1.0 + quarter)
     return value + 0.5 * dt * (rate + after), after
+
+
+@njit(cache=True)
+def heave_step(state: Array, accel_up: float, corner: float, period: float) -> Array:
+    """Return heave [m] and its rate (2,) one period later from the vertical acceleration [m/s2] without gravity.
+
+    Double integration above a corner frequency [rad/s], as motion reference units do it; what lies below fades. A
+    value that is not finite leaves the state as it is.
+    """
+    new = state.copy()
+    if np.isfinite(accel_up):
+        drive = accel_up / (corner * corner)
+        new[0], new[1] = resonator_step(state[0], state[1], drive, corner, BUTTERWORTH, period)
+    return new
 
 
 @njit(cache=True)

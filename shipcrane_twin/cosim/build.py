@@ -20,7 +20,9 @@ from shipcrane_twin.physics.frames import flu_matrix_from_frd
 from shipcrane_twin.physics.hull import HullParams
 from shipcrane_twin.physics.payload import WireParams
 from shipcrane_twin.physics.radiation import RadiationParams
+from shipcrane_twin.physics.slow_pose import follower
 from shipcrane_twin.physics.vessel import VesselParams
+from shipcrane_twin.physics.vessel_step import micro_steps
 from shipcrane_twin.physics.wind import WindParams
 
 CROSS_FLOW_STRIPS = 12
@@ -116,6 +118,7 @@ def vessel_params(scenario: Scenario) -> VesselParams:
     """Return the ship's constants."""
     vessel = scenario.vessel
     data = hydro_database(scenario)
+    step_s = scenario.step_ns / 1e9
     return VesselParams(
         rigid_mass=np.diag([data.mass] * 3 + list(vessel.inertia_kg_m2)),
         hull=hull_params(scenario, data),
@@ -123,6 +126,7 @@ def vessel_params(scenario: Scenario) -> VesselParams:
         cog=np.array(vessel.cog_m),
         crane_base=np.array(scenario.crane.base_m),
         gravity=scenario.constants.gravity_m_s2,
+        follow=follower(scenario.environment.waves.slow_motion_period_s, step_s / micro_steps(step_s)),
     )
 
 

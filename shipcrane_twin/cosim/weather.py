@@ -17,7 +17,8 @@ from shipcrane_twin.physics.sea.components import Irregular, Regular, Waves, mak
 from shipcrane_twin.physics.sea.current import Current, mean_factor, realise_current
 from shipcrane_twin.physics.sea.gusts import Gusts, realise_gusts
 from shipcrane_twin.physics.sea.loads import outside_shares, wave_load_params
-from shipcrane_twin.physics.weather import WeatherParams, follower
+from shipcrane_twin.physics.slow_pose import follower
+from shipcrane_twin.physics.weather import WeatherParams
 
 SEA, GUSTS, CURRENT, SENSORS = 0, 1, 2, 3
 """Streams of random numbers: each has its own, so that another sea leaves the gusts as they were."""

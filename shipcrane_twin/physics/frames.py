@@ -101,6 +101,17 @@ def heading_cosines(rot: Array) -> tuple[float, float]:
 
 
 @njit(cache=True)
+def turned_axes(rot: Array, ahead_x: float, ahead_y: float) -> Array:
+    """Return the matrix (3, 3) from body axes to horizontal axes along (ahead_x, ahead_y), east and north, and up."""
+    out = np.empty((3, 3))
+    for i in range(3):
+        out[0, i] = ahead_x * rot[0, i] + ahead_y * rot[1, i]
+        out[1, i] = ahead_x * rot[1, i] - ahead_y * rot[0, i]
+        out[2, i] = rot[2, i]
+    return out
+
+
+@njit(cache=True)
 def level_axes(rot: Array) -> Array:
     """Return the matrix (3, 3) from body axes to level axes: x ahead and horizontal, z up, whatever roll and pitch.
 
@@ -110,12 +121,7 @@ def level_axes(rot: Array) -> Array:
         Body to world.
     """
     ahead_x, ahead_y = heading_cosines(rot)
-    out = np.empty((3, 3))
-    for i in range(3):
-        out[0, i] = ahead_x * rot[0, i] + ahead_y * rot[1, i]
-        out[1, i] = ahead_x * rot[1, i] - ahead_y * rot[0, i]
-        out[2, i] = rot[2, i]
-    return out
+    return turned_axes(rot, ahead_x, ahead_y)
 
 
 @njit(cache=True)

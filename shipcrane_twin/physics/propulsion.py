@@ -147,7 +147,8 @@ def propulsion_step(
         rise = target[i] - state[i, 1]
         rate, lag = params.speed_rate_max[i], params.speed_lag[i]
         if fault[i] == FAILED:
-            rate, lag = np.inf, params.rundown_lag[i]
+            lag = params.rundown_lag[i]
+            rate = abs(rise) / lag  # the fastest of a plain lag: no limit
         forward, port = 0.0, 0.0
         for k in range(3 * pieces):
             place = (k // 3 + 0.5 + (k % 3 - 1) * np.sqrt(0.15)) / pieces
@@ -160,7 +161,7 @@ def propulsion_step(
             port += thrust * np.sin(azimuth)
         add_load(out.load_b, params.position[i], forward, port)
         azimuth = limited_lag(state[i, 0], gap, params.azimuth_rate_max[i], params.azimuth_lag[i], step_s)
-        out.state[i, 0] = wrap_angle(azimuth)
+        out.state[i, 0] = azimuth if -np.pi <= azimuth < np.pi else wrap_angle(azimuth)  # one that rests keeps its bits
         out.state[i, 1] = limited_lag(state[i, 1], rise, rate, lag, step_s)
         inflow = axis_inflow(params, i, azimuth, flow)
         out.thrust[i] = propeller_thrust(params, i, out.state[i, 1], inflow)

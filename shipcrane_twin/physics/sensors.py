@@ -224,6 +224,14 @@ def mru_motion(odom: Array, accel: Array, arm_b: Array, gravity: float) -> Array
 
 
 @njit(cache=True)
+def vertical_acceleration(motion: Array, gravity: float) -> float:
+    """Return the upward acceleration [m/s2] without gravity of a measured motion (8,), see `mru_motion`."""
+    roll, pitch = motion[0], motion[1]
+    up = np.cos(pitch) * (np.sin(roll) * motion[6] + np.cos(roll) * motion[7]) - np.sin(pitch) * motion[5]
+    return up - gravity
+
+
+@njit(cache=True)
 def relative_wind(odom: Array, wind_w: Array, arm_b: Array) -> Array:
     """Return the wind (2,) that a sensor on the moving ship meets.
 

@@ -13,11 +13,10 @@ from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import (
     cross,
     euler_from_matrix,
-    heading_cosines,
-    level_axes,
     matrix_from_quat,
     quat_rate,
     rotate_to_world,
+    turned_axes,
 )
 from shipcrane_twin.physics.hull import (
     HullParams,
@@ -44,6 +43,8 @@ class VesselParams(NamedTuple):
         Origin of crane_base in base_link [m]; its axes are parallel to base_link.
     gravity : float
         [m/s2].
+    follow : float64, shape (2, 3)
+        With which the level axes follow the heading, see `slow_pose.follower`.
     """
 
     rigid_mass: Array
@@ -52,6 +53,7 @@ class VesselParams(NamedTuple):
     cog: Array
     crane_base: Array
     gravity: float
+    follow: Array
 
 
 @njit(cache=True)
@@ -138,6 +140,7 @@ def state_rate(
     weather: Array,
     water_w: Array,
     attached: Array,
+    heading: tuple[float, float],
 ) -> Array:
     """Return d(state)/dt (13 + r,).
 
@@ -155,6 +158,8 @@ def state_rate(
         Current, world [m/s].
     attached : float64, shape (10,)
         Rigid body carried along at crane_base: its inertia and its weight are added here.
+    heading : float, float
+        Yaw of the level axes [rad] and its rate [rad/s]: the ship's, without its motion at wave frequency.
 
     Raises
     ------
@@ -165,12 +170,15 @@ def state_rate(
     -----
     ``(M_RB + M_attached + A_inf) nu_dot = load + weight + restoring + viscous + memory - C(nu) nu - C_A(nu_r) nu_r``
     (Fossen 2005; Fossen 2011, section 8.3, about the CoG), in level axes, for which seakeeping theory has its loads:
-    in axes that roll with the ship, heave loads would push it sideways on average, harder than the real drift.
+    in axes that roll with the ship, heave loads would push it sideways on average, harder than the real drift, and
+    in axes that yaw with every wave, sway loads would push it ahead.
     """
     nu_b = state[7:13]
     rot = matrix_from_quat(state[3:7])
-    roll, pitch, _ = euler_from_matrix(rot)
-    level = level_axes(rot)
+    roll, pitch, yaw = euler_from_matrix(rot)
+    yaw_rate = (nu_b[4] * rot[2, 1] + nu_b[5] * rot[2, 2]) / (rot[2, 1] * rot[2, 1] + rot[2, 2] * rot[2, 2])
+    ahead_x, ahead_y = np.cos(heading[0]), np.sin(heading[0])
+    level = turned_axes(rot, ahead_x, ahead_y)
     hull = params.hull
 
     motion = np.empty((2, 6))
@@ -181,7 +189,6 @@ def state_rate(
         nu[3 + i] = level[i, 0] * nu_b[3] + level[i, 1] * nu_b[4] + level[i, 2] * nu_b[5]
         total[i] = level[i, 0] * load_b[0] + level[i, 1] * load_b[1] + level[i, 2] * load_b[2] + weather[i]
         total[3 + i] = level[i, 0] * load_b[3] + level[i, 1] * load_b[4] + level[i, 2] * load_b[5] + weather[3 + i]
-    ahead_x, ahead_y = heading_cosines(rot)
     relative[:] = nu
     relative[0] -= ahead_x * water_w[0] + ahead_y * water_w[1]
     relative[1] -= ahead_x * water_w[1] - ahead_y * water_w[0]
@@ -189,19 +196,22 @@ def state_rate(
 
     rate = np.empty(state.shape[0])
     inertia = inertia_in(level, mass6)
-    yaw_rate = nu[5] + np.tan(pitch) * nu[3]
     add_momentum_bias(total, inertia, nu)
-    add_added_mass_bias(total, hull, nu, relative, yaw_rate)
+    add_added_mass_bias(total, hull, nu, relative, heading[1])
+    relative[5] = yaw_rate  # the heading's own; roll and pitch together turn about the vertical, too, on average
     add_viscous_load(total, hull, relative)
     add_memory_load(total, params.radiation, state[13:], relative, rate[13:])
     force_up, roll_moment, pitch_moment = restoring_load(hull, state[2], roll, pitch)
+    off_x, off_y = np.cos(yaw - heading[0]), np.sin(yaw - heading[0])
     weight = -attached[0] * params.gravity
     arm_x = attached[1] + params.crane_base[0] - params.cog[0]
     arm_y = attached[2] + params.crane_base[1] - params.cog[1]
     arm_z = attached[3] + params.crane_base[2] - params.cog[2]
     total[2] += force_up + weight
-    total[3] += roll_moment + weight * (level[1, 0] * arm_x + level[1, 1] * arm_y + level[1, 2] * arm_z)
-    total[4] += pitch_moment - weight * (level[0, 0] * arm_x + level[0, 1] * arm_y + level[0, 2] * arm_z)
+    total[3] += off_x * roll_moment - off_y * pitch_moment
+    total[4] += off_y * roll_moment + off_x * pitch_moment
+    total[3] += weight * (level[1, 0] * arm_x + level[1, 1] * arm_y + level[1, 2] * arm_z)
+    total[4] -= weight * (level[0, 0] * arm_x + level[0, 1] * arm_y + level[0, 2] * arm_z)
 
     inertia += hull.added_mass
     if not factorise(inertia):
@@ -225,26 +235,28 @@ def vessel_step(
     weather_to: Array,
     water_w: Array,
     attached: Array,
+    heading: tuple[float, float],
     step_s: float,
 ) -> Array:
     """Return the state (13 + r,) one classical Runge-Kutta step later.
 
-    The weather's load runs linearly over the step, all else is held; see `state_rate`.
+    The weather's load runs linearly over the step, all else is held; see `state_rate`. Take the heading in the
+    middle of the step.
     """
     count = state.shape[0]
     middle = 0.5 * (weather_from + weather_to)
     half = 0.5 * step_s
-    k1 = state_rate(params, mass6, state, load_b, weather_from, water_w, attached)
+    k1 = state_rate(params, mass6, state, load_b, weather_from, water_w, attached, heading)
     stage = np.empty(count)
     for i in range(count):
         stage[i] = state[i] + half * k1[i]
-    k2 = state_rate(params, mass6, stage, load_b, middle, water_w, attached)
+    k2 = state_rate(params, mass6, stage, load_b, middle, water_w, attached, heading)
     for i in range(count):
         stage[i] = state[i] + half * k2[i]
-    k3 = state_rate(params, mass6, stage, load_b, middle, water_w, attached)
+    k3 = state_rate(params, mass6, stage, load_b, middle, water_w, attached, heading)
     for i in range(count):
         stage[i] = state[i] + step_s * k3[i]
-    k4 = state_rate(params, mass6, stage, load_b, weather_to, water_w, attached)
+    k4 = state_rate(params, mass6, stage, load_b, weather_to, water_w, attached, heading)
     for i in range(count):
         stage[i] = state[i] + (step_s / 6.0) * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
     stage[3:7] /= np.sqrt(stage[3] ** 2 + stage[4] ** 2 + stage[5] ** 2 + stage[6] ** 2)

@@ -11,6 +11,7 @@ from shipcrane_twin.physics.sea.components import Waves
 from shipcrane_twin.physics.sea.current import Current, current_at
 from shipcrane_twin.physics.sea.gusts import Gusts, gust
 from shipcrane_twin.physics.sea.loads import WaveLoadParams, wave_load
+from shipcrane_twin.physics.slow_pose import follow, follow_angle
 from shipcrane_twin.physics.wind import WindParams, wind_load
 
 
@@ -31,7 +32,7 @@ class WeatherParams(NamedTuple):
     cog : float64, shape (3,)
         CoG in base_link [m].
     follow : float64, shape (2, 3)
-        See `follower`.
+        See `slow_pose.follower`.
     """
 
     waves: Waves
@@ -43,28 +44,6 @@ class WeatherParams(NamedTuple):
     wind_towards: Array
     cog: Array
     follow: Array
-
-
-def follower(period_s: float, step_s: float) -> Array:
-    """Return the coefficients (2, 3) with which place and heading are followed without their wave-frequency part.
-
-    Parameters
-    ----------
-    period_s : float
-        Natural period of the critically damped filter [s]; 0 follows at once.
-    step_s : float
-        [s].
-
-    Notes
-    -----
-    Exact for an input held over the step: ``(y, y')`` becomes ``F (y, y') + g u``; rows are ``F_i0, F_i1, g_i``.
-    """
-    if period_s == 0.0:
-        return np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])
-    rate = 2.0 * np.pi / period_s
-    turn = rate * step_s
-    free = np.exp(-turn) * np.array([[1.0 + turn, step_s], [-rate * turn, 1.0 - turn]])
-    return np.column_stack((free, np.array([1.0, 0.0]) - free[:, 0]))
 
 
 @njit(cache=True)
@@ -103,7 +82,7 @@ def weather_step(
     current_w, wind_w : float64, shape (3,)
         [m/s]
     wave_load, wind_load : float64, shape (6,)
-        About the CoG, level axes [N, N m].
+        About the CoG, level axes of the slow heading [N, N m].
 
     Notes
     -----
@@ -111,22 +90,17 @@ def weather_step(
     average is in the drift transfer function already.
     """
     pose, velocity_x, velocity_y = ship_pose(params, odom, step_s)
-    follow = params.follow
     new = np.empty((3, 2))
-    for i in range(3):
-        ahead = pose[i]
-        if i == 2:  # the shorter way round
-            turns = (ahead - slow[2, 0]) / (2.0 * np.pi)
-            ahead -= 2.0 * np.pi * np.floor(turns + 0.5)
-        new[i, 0] = follow[0, 0] * slow[i, 0] + follow[0, 1] * slow[i, 1] + follow[0, 2] * ahead
-        new[i, 1] = follow[1, 0] * slow[i, 0] + follow[1, 1] * slow[i, 1] + follow[1, 2] * ahead
+    for i in range(2):
+        new[i, 0], new[i, 1] = follow(params.follow, slow[i, 0], slow[i, 1], pose[i])
+    new[2, 0], new[2, 1] = follow_angle(params.follow, slow[2, 0], slow[2, 1], pose[2])
 
     current_w, wind_w = np.zeros(3), np.zeros(3)
     current_w[:2] = current_at(params.current, time_s)
     speed = params.mean_wind + gust(params.gusts, time_s)
     wind_w[0], wind_w[1] = speed * params.wind_towards[0], speed * params.wind_towards[1]
     air_x, air_y = wind_w[0] - velocity_x, wind_w[1] - velocity_y
-    ahead_x, ahead_y = np.cos(pose[2]), np.sin(pose[2])
+    ahead_x, ahead_y = np.cos(new[2, 0]), np.sin(new[2, 0])
     blown = wind_load(params.wind, ahead_x * air_x + ahead_y * air_y, ahead_x * air_y - ahead_y * air_x)
 
     waved = np.zeros(6)

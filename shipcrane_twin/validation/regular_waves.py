@@ -24,6 +24,8 @@ NOTHING = np.zeros(10)
 def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: float, count: int) -> Array:
     """Return surge, sway, heave, roll, pitch, yaw (count + 1, 6) of the free ship, heading along x at the origin.
 
+    Water loads act along the momentary heading here: there is no slow one without a past.
+
     The wave load runs linearly over each step, as between the macro steps of a run.
     """
     state = np.zeros(13 + radiation_count(params.radiation))
@@ -40,7 +42,7 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
         load_to = first_order.copy()
         load_to[:2] += drift[:2]
         load_to[5] += drift[2]
-        state = vessel_step(params, mass6, state, no_load, load_from, load_to, still, NOTHING, step_s)
+        state = vessel_step(params, mass6, state, no_load, load_from, load_to, still, NOTHING, (yaw, 0.0), step_s)
         roll, pitch, yaw = euler_from_matrix(matrix_from_quat(state[3:7]))
         out[k + 1] = np.array([state[0], state[1], state[2] - params.hull.design_height, roll, pitch, yaw])
     return out

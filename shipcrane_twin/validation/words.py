@@ -31,23 +31,24 @@ MOTIONS_CAPTION = "Amplitudes of both ways; roll is largest near 1.05 rad/s, its
 DRIFT = """\
 First the load alone: what the kernel gives in a regular wave, averaged over a period, against the transfer
 function. Then the whole ship through the chain of a run (weather with its slow pose, hull, memory, idle
-thrusters; macro steps of 20 ms), in regular waves of 0.02 m, held by springs and dampers of 60 s natural period
-in surge, sway and yaw: the mean of what the springs hold against the transfer function, wherever that is above
-10 % of its largest value.
+thrusters; macro steps of 20 ms), in regular waves of 0.01 m, held by soft springs of 160 s natural period in
+surge, sway and yaw: the mean of what the springs hold against the transfer function, wherever that is above 10 %
+of its largest value.
 
-With first-order loads switched off the held ship agrees within 0.5 %. With them surge misses in 15 and yaw in 4
-cases, because first-order motions make small mean loads of their own, beside the drift that already holds them:
+With first-order loads switched off the held ship agrees within 0.5 %. With them sway holds; surge and yaw miss in
+some cases, because first-order motions make small mean loads of their own, beside the drift that already has
+them:
 
-- Surge: wave, memory and added-mass loads act along the momentary heading. The mean of yaw angle times sway
-  force pushes along the ship; in beam waves at 1.65 rad/s it explains 3.30 of the 3.35 kN/m² that surge differs
-  there, where the surge drift itself is small.
+- Surge: the water's loads act along the momentary heading. The mean of yaw angle times sway force pushes along
+  the ship; it matters in beam waves near 1.65 rad/s, where the surge drift itself is small.
 - Yaw: linear yaw damping acts on the rate about the vertical, whose mean is that of minus roll rate times pitch
-  angle although the heading stays. It shows where roll resonates (1.05 rad/s); drag and the finite period of
-  the slow pose (40 s) add to it.
+  angle although the heading stays. It shows where roll resonates (1.05 rad/s).
 
-Beside the largest mean load of that kind these differences are small (second line of each pair). They grow with
-the square of the wave height like the drift itself. At Hs = 0.3 m and a peak of 10 s, the sea of case 3, both
-are negligible."""
+Both follow from the motions of the frequency domain (`first_order_means` in
+[`validation/drift.py`](../shipcrane_twin/validation/drift.py)). With them taken off, the third line of each group,
+most of the misses are gone; what is left is drag at the roll resonance, the springs' own dampers and the finite
+period of the slow pose (40 s). Beside the largest mean load of their kind (second line) the differences are small;
+they grow with the square of the wave height, like the drift itself."""
 
 DRIFT_CAPTION = "Mean loads per squared amplitude at some of the frequencies."
 
@@ -83,12 +84,15 @@ large part of it, and there water gets out of the way forward and aft, which sec
 - Added mass in pitch and yaw weights the ends with the square of their distance, so it suffers most: A66 is
   about half to two thirds of VERES's, A55 as little as two thirds. A lower A55 makes the natural period of
   pitch shorter. A22 is lower for the same reason, by up to a fifth.
-- Damping falls much faster towards long waves in three dimensions: a body that is small beside the wave sends
-  rings in all directions, and the strips' waves to both sides cancel less. So B22, B44, B55 and B66 are a small
-  share of VERES's at 12 s and come closer at 5 s. Where it matters, at resonance, heave's and pitch's damping
+- Damping falls much faster towards long waves in three dimensions: a body that is small beside the wave
+  hardly makes waves, an endless section still does. So B22, B44, B55 and B66 are a small share of VERES's at
+  12 s, B33 less than half, and come closer at 5 s. Where it matters, at resonance, heave's and pitch's damping
   are compared in the pictures; roll's is mostly viscous and a setting.
 - Surge loads have no place in strip theory (VERES adds them by another method) and yaw loads weight the ends:
   F1 and F6 differ by up to a third at 6 s and more where they are small.
+- Mean drift is each code's own: ours is from the far field. In sway they are alike; in surge
+  VERES has two to three times ours in head and following waves near 1.5 rad/s, and ours goes on where VERES's falls
+  to zero in short waves, which a ship this blunt reflects.
 - Motions of heave and pitch differ less than the coefficients, because in waves longer than the ship stiffness
   and the Froude-Krylov load dominate, which both have alike. VERES's own extra viscous damping is left out on
   both sides here.

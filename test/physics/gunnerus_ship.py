@@ -6,7 +6,7 @@ from palfinger import inertia_tensor
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.cosim.build import hydro_database, vessel_params
 from shipcrane_twin.hydro.rao import natural_periods
-from shipcrane_twin.physics.frames import quat_from_euler
+from shipcrane_twin.physics.frames import matrix_from_quat, quat_from_euler
 from shipcrane_twin.physics.radiation import radiation_count
 from shipcrane_twin.physics.vessel import VesselParams, carried_inertia, state_rate, vessel_step
 
@@ -38,15 +38,26 @@ def state_at(place=(0.0, 0.0, 0.0), euler=(0.0, 0.0, 0.0), nu=(0.0,) * 6, ship=S
     return np.concatenate((position, quat_from_euler(*euler), nu, np.zeros(radiation_count(ship.radiation))))
 
 
+def heading_of(state):
+    """Yaw and its rate."""
+    rot = matrix_from_quat(state[3:7])
+    rate = (state[11] * rot[2, 1] + state[12] * rot[2, 2]) / (rot[2, 1] ** 2 + rot[2, 2] ** 2)
+    return np.arctan2(rot[1, 0], rot[0, 0]), rate
+
+
 def rate_of(ship, state, load_b, water_w, attached):
-    """Rate of the state with the inertia that belongs to the attached body."""
-    return state_rate(ship, carried_inertia(ship, attached), state, load_b, NO_LOAD, water_w, attached)
-
-
-def held_step(ship, state, load_b, water_w, attached, step_s):
-    """One step under a constant load."""
+    """Rate of the state with the inertia that belongs to the attached body, level axes along the momentary heading."""
     mass6 = carried_inertia(ship, attached)
-    return vessel_step(ship, mass6, state, load_b, NO_LOAD, NO_LOAD, water_w, attached, step_s)
+    return state_rate(ship, mass6, state, load_b, NO_LOAD, water_w, attached, heading_of(state))
+
+
+def held_step(ship, state, load_b, water_w, attached, step_s, heading=None):
+    """One step under a constant load; level axes along the momentary heading if none is given."""
+    if heading is None:
+        yaw, rate = heading_of(state)
+        heading = yaw + 0.5 * step_s * rate, rate
+    mass6 = carried_inertia(ship, attached)
+    return vessel_step(ship, mass6, state, load_b, NO_LOAD, NO_LOAD, water_w, attached, heading, step_s)
 
 
 def alone(add, *args):

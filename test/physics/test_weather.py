@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.cosim.weather import weather_params
 from shipcrane_twin.physics.sea.loads import wave_load
-from shipcrane_twin.physics.weather import follower, ship_pose, weather_step
+from shipcrane_twin.physics.slow_pose import follower
+from shipcrane_twin.physics.weather import ship_pose, weather_step
 from shipcrane_twin.physics.wind import wind_load
 
 REGULAR = "environment.waves.systems=[{spectrum: regular, direction_to_deg: 60.0, height_m: 0.4, period_s: 8.0}]"
