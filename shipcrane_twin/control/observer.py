@@ -137,9 +137,10 @@ def passive_gains(params: PassiveParams, wave_frequency: Array) -> Array:
 
     Notes
     -----
-    K1 and K2 place the poles of the filter at ``(s^2 + 2 zn w0 s + w0^2)(s + wc)`` (Fossen 2011, equations 11.107 to
-    11.109). Well below w0 the rest is third order; K3 and K4 give it the poles ``(s + wc - 2 zb wb)(s^2 + 2 zb wb s
-    + wb^2)``. Where a slow sea brings wc near the bias loop, wb gives way, so that the first pole stays above wc/2.
+    K1 and K2 place the poles of the filter at ``(s^2 + 2 zn w0 s + w0^2)(s + wc)`` (the tuning rules of Fossen and
+    Strand 1999; Fossen 2011, section 11.4.1). Well below w0 the rest is third order; K3 and K4 give it the poles
+    ``(s + wc - 2 zb wb)(s^2 + 2 zb wb s + wb^2)``. Where a slow sea brings wc near the bias loop, wb gives way, so
+    that the first pole stays above wc/2.
     """
     omega = chosen_frequency(params.wave_frequency, wave_frequency)
     gains = np.empty((3, 5))
