@@ -263,7 +263,7 @@ class Positioning:
         )
         self._achieved = given + stray
         azimuth, thrust = self._allocation_state[:, 0].copy(), self._allocation_state[:, 1].copy()
-        speed = speed_for_thrust(self.thrusters, thrust, truth.thruster_state, np.append(self.velocity_b[:2], 0.0))
+        speed = speed_for_thrust(self.thrusters, truth.thruster_state, thrust, self.velocity_b)
         self.command = np.column_stack((azimuth, speed))
 
     def _wind_load(self) -> Array:
