@@ -160,6 +160,15 @@ def test_load_times_step_is_the_integral_of_a_fine_run_and_states_agree(seed, st
     np.testing.assert_allclose(fine[-1].thrust, coarse.thrust, atol=1e-4)
 
 
+def test_mean_load_is_the_integral_to_a_millionth_where_no_rate_limit_ends():
+    quick = SHIP._replace(speed_rate_max=np.full(3, 1e3), azimuth_rate_max=np.full(3, 1e3))
+    start = np.array([[0.3, 1.0], [-0.4, 2.0], [np.pi / 2, 3.0]])
+    command = np.column_stack(([1.0, -2.0, 0.0], SPEED))
+    coarse = propulsion_step(quick, start, command, STILL, WELL, WHOLE, 0.2)
+    fine = run(quick, start, command, 0.2, 0.2 / 400.0)
+    np.testing.assert_allclose(np.mean([o.load_b for o in fine], axis=0), coarse.load_b, rtol=1e-7)
+
+
 @compiled
 @given(seed=seeds)
 def test_held_thrusters_load_the_ship_by_force_and_moment(seed):
