@@ -34,7 +34,10 @@ def static_thrust(params: AllocationParams, load: Array, share: Array, piece: Ar
     number = piece_numbers(params, share)
     best, best_piece, best_cost = np.zeros(2 * count), np.zeros(count), np.inf
     found = False
-    for choice in range(number.prod()):
+    choices = 1
+    for value in number:
+        choices *= value
+    for choice in range(choices):
         trial, rest, same = np.zeros(count), choice, True
         for i in range(count):
             trial[i] = rest % number[i]
@@ -60,7 +63,9 @@ def piece_numbers(params: AllocationParams, share: Array) -> IntArray:
     number = np.ones(share.shape[0], dtype=np.int64)
     for i in range(share.shape[0]):
         if params.azimuthing[i] != 0.0 and share[i] > 0.0:
-            number[i] = max(1, int(np.sum(params.pieces[i, :, 1] > 0.0)))
+            number[i] = 0
+            for k in range(params.pieces.shape[1]):
+                number[i] += params.pieces[i, k, 1] > 0.0
     return number
 
 
@@ -122,14 +127,17 @@ def solve_load(
     count = share.shape[0]
     weight, middle = np.empty(2 * count + 3), np.zeros(2 * count + 3)
     for i in range(count):
-        weight[2 * i : 2 * i + 2] = params.power_share[i]
-        if share[i] > 0.0:
-            middle[2 * i : 2 * i + 2] = centre[2 * i : 2 * i + 2]
+        for j in range(2 * i, 2 * i + 2):
+            weight[j] = params.power_share[i]
+            middle[j] = centre[j] if share[i] > 0.0 else 0.0
     weight[2 * count] = params.along_weight
     weight[2 * count + 1] = params.across_weight if turned else params.along_weight
     weight[2 * count + 2] = params.yaw_weight
     x, _, solved = solve_qp(weight, middle, rows, limits, 3)
-    return x[: 2 * count].copy(), np.sum(weight * (x - middle) ** 2), solved
+    cost = 0.0
+    for j in range(2 * count + 3):
+        cost += weight[j] * (x[j] - middle[j]) ** 2
+    return x[: 2 * count].copy(), cost, solved
 
 
 @njit(cache=True)

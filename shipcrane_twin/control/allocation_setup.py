@@ -26,7 +26,7 @@ class AllocationParams(NamedTuple):
         [N].
     power_share : float64
         Power at full thrust over that of all thrusters; power is taken as its quadratic approximation, exact at
-        none and full thrust and below ``T^1.5`` between by 15 % of the full power at most.
+        none and full thrust and between them below ``T^1.5``, by 11 % of the full power at most.
     azimuth_step, thrust_step : float64
         Largest change over one period [rad], [N].
     lead_max : float64
@@ -62,9 +62,9 @@ class AllocationParams(NamedTuple):
     method: int
 
 
-LOAD_WEIGHT, PRIORITY, DIRECTION = 3e7, 1e3, 1e3
-"""Weight of missing load over power, with which a load that can be given is given to about 1e-7 of the full load;
-of what comes first over what comes second; of force across the asked direction over force missing along it."""
+LOAD_WEIGHT, PRIORITY = 3e7, 1e3
+"""Weight of missing load over power, with which a load that can be given is given to 1e-6 of the full load; of what
+comes first over what comes next: yaw, force across the asked direction, force along it, or yaw after the two."""
 
 
 def allocation_params(
@@ -129,8 +129,8 @@ def allocation_params(
     force = thrust_max.sum()
     scale = np.array([force, force, force * max(np.hypot(x, y).max(), 1.0)])
     arcs = [allowed_arcs(zones) for zones in forbidden]
-    first, second = LOAD_WEIGHT * PRIORITY, LOAD_WEIGHT
-    along = second if yaw_first else first
+    low, middle, high = LOAD_WEIGHT, LOAD_WEIGHT * PRIORITY, LOAD_WEIGHT * PRIORITY**2
+    along, across, yaw = (low, middle, high) if yaw_first else (middle, high, low)
     return AllocationParams(
         effect=effect * np.repeat(thrust_max, 2) / scale[:, None],
         load_scale=scale,
@@ -146,8 +146,8 @@ def allocation_params(
         bias=(bias * steers[:, None] / thrust_max[:, None]).ravel(),
         hold_thrust=np.maximum(hold_thrust, 1e-9 * thrust_max),
         along_weight=along,
-        across_weight=along * DIRECTION,
-        yaw_weight=first if yaw_first else second,
+        across_weight=across,
+        yaw_weight=yaw,
         method=METHODS[method],
     )
 

@@ -48,28 +48,34 @@ def solve_qp(weight: Array, centre: Array, rows: Array, limits: Array, equalitie
     normals of the active constraints, ``basis[:, :q] @ upper = active normals``.
     """
     count, n = rows.shape
-    root = np.sqrt(weight)
+    root = np.empty(n)
+    for j in range(n):
+        root[j] = np.sqrt(weight[j])
     normal, bound, length, sound = scaled_rows(root, centre, rows, limits, equalities)
     multiplier = np.zeros(count)
     if not sound:
         return centre.copy(), multiplier, False
     z = np.zeros(n)
-    basis, upper = np.eye(n), np.zeros((n, n))
-    active, push, sign = np.full(n, -1), np.zeros(n), np.ones(count)
+    basis, upper = np.zeros((n, n)), np.zeros((n, n))
+    for j in range(n):
+        basis[j, j] = 1.0
+    active, push, sign = np.zeros(n, dtype=np.int64), np.zeros(n), np.ones(count)
     q = 0
     solved = False
     for _ in range(10 * (count + n)):
-        new, side = most_violated(normal, bound, z, active[:q], equalities)
+        new, side = most_violated(normal, bound, z, active, q, equalities)
         if new < 0:
             solved = True
             break
-        q = take_up(side * normal[new], side * bound[new], new, z, basis, upper, active, push, q, equalities)
+        q = take_up(normal, bound, side, new, z, basis, upper, active, push, q, equalities)
         if q < 0:
             return centre.copy(), multiplier, False
         sign[new] = side
     for j in range(q):
         multiplier[active[j]] = sign[active[j]] * push[j] / length[active[j]]
-    return centre + z / root, multiplier, solved
+    for j in range(n):
+        z[j] = centre[j] + z[j] / root[j]
+    return z, multiplier, solved
 
 
 @njit(cache=True)
@@ -78,17 +84,19 @@ def scaled_rows(
 ) -> tuple[Array, Array, Array, bool]:
     """Return unit normals and bounds for ``z = root * (x - centre)``, the lengths cut, and if z can exist at all."""
     count = rows.shape[0]
-    normal, bound, length = rows / root, limits.copy(), np.empty(count)
+    normal, bound, length = rows.copy(), limits.copy(), np.empty(count)
     for i in range(count):
         size = 0.0
         for j in range(root.shape[0]):
+            normal[i, j] /= root[j]
             size += normal[i, j] ** 2
             bound[i] -= rows[i, j] * centre[j]
         length[i] = np.sqrt(size)
         if not np.isfinite(size + bound[i]):
             return normal, bound, length, False
         if size > 0.0:
-            normal[i] /= length[i]
+            for j in range(root.shape[0]):
+                normal[i, j] /= length[i]
             bound[i] /= length[i]
         elif bound[i] > 0.0 or (i < equalities and bound[i] < 0.0):
             return normal, bound, length, False
@@ -98,7 +106,8 @@ def scaled_rows(
 @njit(cache=True)
 def take_up(
     normal: Array,
-    bound: float,
+    bound: Array,
+    side: float,
     new: int,
     z: Array,
     basis: Array,
@@ -113,16 +122,14 @@ def take_up(
     On the way inequalities that would begin to pull leave the active set; ``push`` holds the multipliers.
     """
     n = z.shape[0]
-    gap = bound - np.sum(normal * z)
+    gap = side * bound[new]
+    for j in range(n):
+        gap -= side * normal[new, j] * z[j]
     added = 0.0
     while True:
-        share, free = split_normal(basis, normal, q)
+        share, free = split_normal(basis, normal, side, new, q)
         effect = back_substitute(upper, share, q)
-        # the longest step along which no active inequality begins to pull
-        partial, leaving = np.inf, -1
-        for j in range(q):
-            if active[j] >= equalities and effect[j] > 0.0 and push[j] / effect[j] < partial:
-                partial, leaving = push[j] / effect[j], j
+        partial, leaving = longest_step(active, push, effect, q, equalities)
         full = gap / free if free > DEPENDENT else np.inf
         step = min(partial, full)
         if not step < np.inf:
@@ -132,7 +139,8 @@ def take_up(
                 for j in range(q, n):
                     z[k] += step * basis[k, j] * share[j]
             gap -= step * free
-        push[:q] -= step * effect[:q]
+        for j in range(q):
+            push[j] -= step * effect[j]
         added += step
         if step == full:
             active[q], push[q] = new, added
@@ -146,15 +154,15 @@ def take_up(
 
 @njit(cache=True)
 def most_violated(
-    normal: Array, bound: Array, z: Array, active: IntArray, equalities: int
+    normal: Array, bound: Array, z: Array, active: IntArray, q: int, equalities: int
 ) -> tuple[int, float]:
     """Return the constraint to take up next, -1 for none, and the sign of its normal; equalities come first."""
     size = 10.0
     for value in z:
         size = max(size, abs(value))
     taken = np.zeros(normal.shape[0], dtype=np.bool_)
-    for i in active:
-        taken[i] = True
+    for j in range(q):
+        taken[active[j]] = True
     worst, found, side = -1e-13 * size, -1, 1.0
     for i in range(normal.shape[0]):
         if taken[i]:
@@ -171,13 +179,23 @@ def most_violated(
 
 
 @njit(cache=True)
-def split_normal(basis: Array, normal: Array, q: int) -> tuple[Array, float]:
-    """Return a normal (n,) in the basis, and the squared length of its part outside the q active ones."""
-    n = normal.shape[0]
+def longest_step(active: IntArray, push: Array, effect: Array, q: int, equalities: int) -> tuple[float, int]:
+    """Return the step at which the first active inequality would begin to pull, and its place; inf and -1 for none."""
+    step, leaving = np.inf, -1
+    for j in range(q):
+        if active[j] >= equalities and effect[j] > 0.0 and push[j] / effect[j] < step:
+            step, leaving = push[j] / effect[j], j
+    return step, leaving
+
+
+@njit(cache=True)
+def split_normal(basis: Array, normal: Array, side: float, new: int, q: int) -> tuple[Array, float]:
+    """Return ``side * normal[new]`` in the basis (n,), and its squared length outside the q active normals."""
+    n = basis.shape[0]
     share, free = np.zeros(n), 0.0
     for k in range(n):
         for j in range(n):
-            share[j] += basis[k, j] * normal[k]
+            share[j] += basis[k, j] * side * normal[new, k]
     for j in range(q, n):
         free += share[j] ** 2
     return share, free
