@@ -137,12 +137,13 @@ class ControllerConfig:
 
 @settings
 class AllocationConfig:
-    """Thrust allocation."""
+    """Thrust allocation; azimuths push against each other with ``bias_thrust_n`` while little is asked of them."""
 
     method: Literal["qp", "pseudo_inverse"]
     priority: Literal["yaw", "position"]
     thrust_rate_max_share: Annotated[Number, Gt(0), Le(10)]
     hold_thrust_n: NotNegative
+    bias_thrust_n: NotNegative
 
 
 @settings

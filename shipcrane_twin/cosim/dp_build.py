@@ -105,7 +105,7 @@ def allocation_of(scenario: Scenario, thrusters: PropulsionParams) -> Allocation
         thrust_rate_max=config.thrust_rate_max_share * thrust_max,
         period=seconds_of(scenario.dp.period_ms),
         forbidden=[[tuple(np.deg2rad(zone)) for zone in t.forbidden_deg] for t in vessel.thrusters],
-        bias=opposing_bias(thrusters.position, thrusters.azimuthing, 0.0),
+        bias=opposing_bias(thrusters.position, thrusters.azimuthing, config.bias_thrust_n),
         hold_thrust=hold,
         yaw_first=config.priority == "yaw",
         method=config.method,
