@@ -35,20 +35,11 @@ thrusters; macro steps of 20 ms), in regular waves of 0.01 m, held by soft sprin
 surge, sway and yaw: the mean of what the springs hold against the transfer function, wherever that is above 10 %
 of its largest value.
 
-With first-order loads switched off the held ship agrees within 0.5 %. With them sway holds; surge and yaw miss in
-some cases, because first-order motions make small mean loads of their own, beside the drift that already has
-them:
-
-- Surge: the water's loads act along the momentary heading. The mean of yaw angle times sway force pushes along
-  the ship; it matters in beam waves near 1.65 rad/s, where the surge drift itself is small.
-- Yaw: linear yaw damping acts on the rate about the vertical, whose mean is that of minus roll rate times pitch
-  angle although the heading stays. It shows where roll resonates (1.05 rad/s).
-
-Both follow from the motions of the frequency domain (`first_order_means` in
-[`validation/drift.py`](../shipcrane_twin/validation/drift.py)). With them taken off, the third line of each group,
-most of the misses are gone; what is left is drag at the roll resonance, the springs' own dampers and the finite
-period of the slow pose (40 s). Beside the largest mean load of their kind (second line) the differences are small;
-they grow with the square of the wave height, like the drift itself."""
+The drag that grows with squared speed is switched off: in waves it has a mean of its own, which is real but not in
+the transfer function. That first-order loads and motions make next to no mean load of their own is not a matter of
+course. It takes waves that act at the slow pose (50 s), water loads in axes that neither roll nor yaw with the waves,
+and yaw damping on the rate of the heading; in axes fixed to the ship the differences are several times the drift.
+What is left near the roll resonance comes from the springs' dampers and the finite period of the slow pose."""
 
 DRIFT_CAPTION = "Mean loads per squared amplitude at some of the frequencies."
 

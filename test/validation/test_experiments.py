@@ -84,16 +84,11 @@ def test_without_first_order_loads_the_held_ship_feels_the_drift_alone(rig, meas
 
 
 def test_mean_loads_of_the_whole_ship(rig, measured):
-    """Sway keeps its bar; first-order motions add mean loads in surge and yaw, small beside the largest."""
+    """First-order loads and motions add no mean load of their own."""
     held = drift.held_drift(rig, (1.05, 1.65), 45)
-    rows = {row.what: row for row in drift.drift_rows(held, rig.data)}
-    sway = rows["mean sway load on the held ship against the transfer function"]
-    measured(f"drift: {sway.what}", 100.0 * sway.value, 100.0 * sway.bar, "%")
-    for name in drift.NAMES:
-        row = rows[f"the same, {name}, largest difference over the largest mean load"]
-        measured(
-            f"drift: error of the mean {name} load on the held ship over the largest", 100.0 * row.value, 10.0, "%"
-        )
+    for row in drift.drift_rows(held, rig.data):
+        if row.bar:
+            measured(f"drift: {row.what}", 100.0 * row.value, 100.0 * row.bar, "%")
 
 
 def test_a_drift_of_the_wrong_size_is_seen(rig):
