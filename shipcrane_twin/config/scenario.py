@@ -56,9 +56,9 @@ class OperationConfig:
 class EventConfig:
     """Something that happens at one time.
 
-    ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it does from
-    then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is position, gyro, mru or wind; it
-    drops out or freezes. ``power_limit``: ``share`` of the total power is left. The fault none repairs.
+    ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it does
+    from then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is position, gyro, mru or
+    wind; it drops out or freezes. ``power_limit``: ``share`` of the total power is left. The fault none repairs.
     """
 
     label: Text
@@ -134,6 +134,8 @@ def problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         *time_problems(scenario),
         *crane_problems(scenario),
         *operation_problems(scenario),
+        *sensor_problems(scenario),
+        *event_problems(scenario),
         *winch_problems(scenario),
         *weather_problems(scenario),
     ]
@@ -195,6 +197,46 @@ def operation_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
                 found.append((here, f"expected no overlap with another move of {move.joint}, {start:g} to {end:g} s"))
         busy[move.joint].append((move.from_s, move.to_s))
     return found
+
+
+def sensor_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that every sensor's period is a whole multiple of the DP's."""
+    dp = scenario.dp
+    found: list[tuple[list[str | int], str]] = []
+    for name in () if dp.sensors.perfect else ("position", "gyro", "mru", "wind"):
+        ratio = getattr(dp.sensors, name).period_ms / dp.period_ms
+        if ratio < 1.0 or abs(ratio - round(ratio)) > 1e-9:
+            advice = f"expected a whole multiple of dp.period_ms = {dp.period_ms:g}"
+            found.append((["dp", "sensors", name, "period_ms"], advice))
+    return found
+
+
+def event_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that events name parts that exist, and say what happens to them."""
+    found: list[tuple[list[str | int], str]] = []
+    thrusters = [thruster.name for thruster in scenario.vessel.thrusters]
+    parts = {"thruster_fault": thrusters, "sensor_fault": ["position", "gyro", "mru", "wind"]}
+    faults = {
+        "thruster_fault": ["none", "failed", "frozen", "limited", "runaway"],
+        "sensor_fault": ["none", "drop_out", "frozen"],
+    }
+    for i, event in enumerate(scenario.events):
+        here: list[str | int] = ["events", i]
+        known = parts.get(event.event, [None])
+        if event.which not in known:
+            found.append(([*here, "which"], f"expected {one_of(known)} with the event {event.event}"))
+        if event.fault not in faults.get(event.event, [None]):
+            told = one_of(faults.get(event.event, [None]))
+            found.append(([*here, "fault"], f"expected {told} with the event {event.event}"))
+        wants_share = event.event == "power_limit" or event.fault == "limited"
+        if wants_share != (event.share is not None):
+            found.append(([*here, "share"], f"expected {'a share' if wants_share else 'none'} with {event.event}"))
+    return found
+
+
+def one_of(names: list[str] | list[None]) -> str:
+    """Return names for a message."""
+    return "one of " + ", ".join(map(str, names)) if names != [None] else "none"
 
 
 def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:

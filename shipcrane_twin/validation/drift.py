@@ -6,15 +6,16 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.cosim.build import hydro_database, thruster_params, vessel_params
+from shipcrane_twin.cosim.build import hydro_database, vessel_params
+from shipcrane_twin.cosim.dp_build import propulsion_params
 from shipcrane_twin.cosim.weather import weather_params
 from shipcrane_twin.hydro.compare import Row
 from shipcrane_twin.hydro.database import HydroDatabase
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import cross, euler_from_matrix, matrix_from_quat, rotate_to_body, rotate_to_world
+from shipcrane_twin.physics.propeller import PropulsionParams
 from shipcrane_twin.physics.sea.components import Waves, make_waves
 from shipcrane_twin.physics.sea.loads import wave_load, wave_load_params
-from shipcrane_twin.physics.thrusters import ThrusterParams
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.vessel_step import vessel_at_rest, vessel_macro_step, vessel_outputs
 from shipcrane_twin.physics.weather import WeatherParams, weather_step
@@ -38,7 +39,7 @@ class Rig(NamedTuple):
     """The ship of a scenario in calm weather, and its macro step [s]."""
 
     ship: VesselParams
-    thrusters: ThrusterParams
+    thrusters: PropulsionParams
     weather: WeatherParams
     data: HydroDatabase
     step_s: float
@@ -63,7 +64,7 @@ def make_rig(scenario_name: str) -> Rig:
     smooth = ship.hull._replace(current_scale=np.zeros(3), strips=np.zeros((1, 2)), roll_quadratic=0.0)
     return Rig(
         ship._replace(hull=smooth),
-        thruster_params(scenario),
+        propulsion_params(scenario),
         weather_params(scenario),
         hydro_database(scenario),
         scenario.step_ns / 1e9,
@@ -73,7 +74,7 @@ def make_rig(scenario_name: str) -> Rig:
 @njit(cache=True)
 def hold_ship(
     ship: VesselParams,
-    thrusters: ThrusterParams,
+    thrusters: PropulsionParams,
     weather: WeatherParams,
     spring: Array,
     damper: Array,
@@ -89,8 +90,10 @@ def hold_ship(
     state[2] = ship.hull.design_height
     state[6] = 1.0
     nothing = np.zeros(10)
-    idle = np.zeros((thrusters.thrust_max.shape[0], 2))
-    memory = vessel_at_rest(ship, state, nothing, thrusters.thrust_max.shape[0])
+    count_thrusters = thrusters.diameter.shape[0]
+    idle = np.zeros((count_thrusters, 2))
+    fault, share = np.zeros(count_thrusters, np.int64), np.ones(count_thrusters)
+    memory = vessel_at_rest(ship, state, nothing, count_thrusters)
     arm = ship.crane_base - ship.cog
     slow = np.zeros((3, 2))
     out = np.empty((count, 3))
@@ -106,7 +109,9 @@ def hold_ship(
         wrench[:3] = force_b
         wrench[3:] = rotate_to_body(rot, np.array([0.0, 0.0, out[k, 2]])) - cross(arm, force_b)
         slow, current_w, _, waved, blown = weather_step(weather, slow, odom, (k + 1) * step_s, step_s)
-        memory = vessel_macro_step(ship, thrusters, memory, idle, waved + blown, wrench, nothing, current_w, step_s)
+        memory = vessel_macro_step(
+            ship, thrusters, memory, idle, fault, share, waved + blown, wrench, nothing, current_w, step_s
+        )
     return out
 
 

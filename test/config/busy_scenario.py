@@ -72,12 +72,27 @@ def busy():
         "wind_gusts": "froya",
     }
     data["vessel"]["ballast"] = {"mode": "values", "heave_n": 1e3, "roll_n_m": 2e4, "pitch_n_m": 3e4}
-    data["dp"]["enabled_at_s"] = 0.0
+    dp = data["dp"]
+    dp["enabled_at_s"] = 0.0
+    dp["period_ms"] = 20.0
+    dp["sensors"]["gyro"]["bias_std_deg"] = 0.05
+    for sensor in ("position", "gyro", "mru", "wind"):
+        dp["sensors"][sensor]["period_ms"] = 40.0
+        dp["sensors"][sensor]["delay_samples"] = 1
+    dp["observer"] |= {"lost_after_s": 0.1, "return_s": 0.2}
+    dp["controller"]["crane_share"] = 0.5
+    dp["setpoints"] = [{"at_s": 0.3, "north_m": 2.0, "east_m": -1.0, "heading_deg": 12.0}]
     data["dp"]["setpoint"] = {"north_m": 1.0, "east_m": -2.0, "heading_deg": 10.0}
     data["operations"] = [
         {"label": joint, "joint": joint, "from_s": 0.1, "to_s": 0.6, **speed} for joint, speed in MOVES.items()
     ]
-    data["events"] = [{"label": "drop", "at_s": 0.4, "event": "release_payload"}]
+    data["events"] = [
+        {"label": "drop", "at_s": 0.4, "event": "release_payload"},
+        {"label": "weak", "at_s": 0.3, "event": "thruster_fault", "which": "bow_tunnel", "fault": "limited", "share": 0.4},
+        {"label": "blackout", "at_s": 0.5, "event": "power_limit", "share": 0.001},
+        {"label": "no fix", "at_s": 0.1, "event": "sensor_fault", "which": "position", "fault": "drop_out"},
+        {"label": "fix", "at_s": 0.4, "event": "sensor_fault", "which": "position", "fault": "none"},
+    ]
     for i in range(6):  # so that every pair of modes may be coupled by damping
         data["vessel"]["hull"]["viscous_damping_frd"][i][i] += 1e4
     return data
@@ -88,7 +103,7 @@ def weak():
     data = busy()
     for link, effort in zip(data["crane"]["links"], (50.0, 1e4, 5e3, 1e3), strict=True):
         link["drive"]["effort_max"] = effort
-    data["dp"]["load_max"] = [1.0, 1.0, 10.0]
+    data["dp"]["controller"]["load_max"] = [1.0, 1.0, 10.0]
     return data
 
 
@@ -100,8 +115,9 @@ def slow():
         link["drive"][key] = 0.001
     for thruster in data["vessel"]["thrusters"]:
         thruster["thrust_max_n"] = 1.0
+        thruster["power_max_kw"] = 0.01
     data["winch"]["speed_max_m_s"] = 0.02
-    data["dp"] |= {"reference_speed_max_m_s": 0.002, "reference_turn_max_deg_s": 0.005}
+    data["dp"]["reference"] |= {"speed_max_m_s": 0.002, "turn_max_deg_s": 0.005}
     return data
 
 
@@ -132,4 +148,13 @@ def flow_along_row(path, data):
     else:
         data["environment"]["current_deviation_m_s"] = 0.0
         data["environment"]["current_direction_to_deg"] = angle
+    return data
+
+
+def filtered():
+    """The Kalman filter, a heading that follows the weather, thrusters that turn fast."""
+    data = busy()
+    data["dp"]["observer"]["kind"] = "ekf"
+    data["dp"]["weathervane"]["enabled"] = True
+    data["dp"]["controller"]["fade_s"] = 1.0
     return data

@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from busy_scenario import at_ends, busy, flow_along_row, look, put, slow, weak
+from busy_scenario import at_ends, busy, filtered, flow_along_row, look, put, slow, weak
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -51,7 +51,7 @@ def small_changes(value, path):
     if path[-1] in ("duration_s", "at_s", "from_s", "to_s", "enabled_at_s"):
         return [value + 0.02]
     if path[-1] in ("macro_step_ms", "telemetry_period_ms", "period_ms"):
-        return [value * 1.25, value * 1.2]
+        return [value * 1.25, value * 1.2, value * 2.0]
     step = 0.01 * abs(value) or 1e-3
     return [value + step, value - step]
 
@@ -89,7 +89,7 @@ PATHS = list(numbers(busy()))
 
 
 def test_every_number_changes_the_run_or_is_listed():
-    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "long": at_ends(1), "short": at_ends(-1)}
+    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered(), "long": at_ends(1), "short": at_ends(-1)}
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):

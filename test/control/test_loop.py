@@ -16,7 +16,8 @@ from shipcrane_twin.control.loop import (
 )
 from shipcrane_twin.control.observer import passive_gains, passive_params, passive_start, passive_step
 from shipcrane_twin.control.observer_model import observer_pose, observer_velocity
-from shipcrane_twin.cosim.build import dp_params, hydro_database, thruster_params, vessel_params
+from shipcrane_twin.cosim.build import hydro_database, vessel_params
+from shipcrane_twin.cosim.dp_build import controller_of
 
 LAG_S = 2.0
 NAMES = ("surge", "sway", "yaw")
@@ -32,10 +33,11 @@ def one_axis(params, axis, s):
 def shipped():
     """Inertia, damping, gains and thruster lag of the shipped configuration."""
     scenario = load_scenario("case3")
-    vessel, data, dp = vessel_params(scenario), hydro_database(scenario), dp_params(scenario)
+    vessel, data = vessel_params(scenario), hydro_database(scenario)
     inertia = horizontal(vessel.rigid_mass + data.added_mass[0])
-    gains = controller(mass=inertia)._replace(stiffness=dp.stiffness, damping=dp.damping, integral=dp.integral)
-    return inertia, horizontal(vessel.hull.damping), gains, thruster_params(scenario).time_constant
+    gains = controller_of(scenario.dp, inertia)
+    lag = max(thruster.shaft_lag_s for thruster in scenario.vessel.thrusters)
+    return inertia, horizontal(vessel.hull.damping), gains, lag
 
 
 def test_loop_is_that_of_each_axis_when_nothing_couples_them():

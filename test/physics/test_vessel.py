@@ -22,7 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from shipcrane_twin.cosim.build import thruster_params
+from shipcrane_twin.cosim.dp_build import propulsion_params
 from shipcrane_twin.physics.frames import matrix_from_quat
 from shipcrane_twin.physics.vessel import (
     add_momentum_bias,
@@ -280,15 +280,16 @@ def test_a_step_leaves_its_inputs_alone_and_the_quaternion_a_unit():
 
 @pytest.mark.parametrize("step_s", [0.02, 0.05, 0.1])  # the last in two Runge-Kutta steps
 def test_weather_runs_linearly_from_one_step_to_the_next(step_s):
-    thrusters = thruster_params(SCENARIO)
-    count = len(thrusters.thrust_max)
+    thrusters = propulsion_params(SCENARIO)
+    count = len(thrusters.diameter)
+    idle, sound, full = np.zeros((count, 2)), np.zeros(count, np.int64), np.ones(count)
     memory = vessel_at_rest(SHIP, state_at()[:13], NOTHING_ATTACHED, count)
     weather = np.array([0.0, 0.0, 1e5, 0.0, 0.0, 0.0])
     mass = 1.0 / np.linalg.inv(SHIP.rigid_mass + SHIP.hull.added_mass)[2, 2]
     gained = []
     for _ in range(2):
         new = vessel_macro_step(
-            SHIP, thrusters, memory, np.zeros((count, 2)), weather, NO_LOAD, NOTHING_ATTACHED, STILL_WATER, step_s
+            SHIP, thrusters, memory, idle, sound, full, weather, NO_LOAD, NOTHING_ATTACHED, STILL_WATER, step_s
         )
         gained.append((new[9] - memory[9]) * mass / (1e5 * step_s))
         memory = new

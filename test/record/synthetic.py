@@ -11,7 +11,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_typestore
 from scipy.spatial.transform import Rotation
 
-from shipcrane_twin.cosim.topics import ACCEL, CLOCK, CLOUD, INERTIA, JOINTS, ODOMETRY, POSE, TOPICS, TWIST, WRENCH
+from shipcrane_twin.cosim.topics import ACCEL, CLOCK, CLOUD, IMU, INERTIA, JOINTS, ODOMETRY, POSE, TOPICS, TWIST, WRENCH
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 HOT_MS, TELEMETRY_MS = 20, 100
@@ -90,6 +90,20 @@ def joint_state(time_ns, names, position=(), velocity=(), effort=()):
     )
 
 
+def imu(time_ns, numbers):
+    zeros = np.zeros(9)
+    return make(
+        "sensor_msgs/msg/Imu",
+        header=header(time_ns, "mru"),
+        orientation=make("geometry_msgs/msg/Quaternion", **dict(zip("xyzw", map(float, numbers[:4]), strict=True))),
+        orientation_covariance=zeros,
+        angular_velocity=vector(numbers[4:7]),
+        angular_velocity_covariance=zeros,
+        linear_acceleration=vector(numbers[7:10]),
+        linear_acceleration_covariance=zeros,
+    )
+
+
 def cloud(time_ns, numbers, names):
     """Return one point per row of columns (n, len(names)), or one point."""
     rows = np.reshape(numbers, (-1, len(names))).astype("<f8")
@@ -121,6 +135,7 @@ def builder(topic):
         return build
     return {
         CLOCK: clock,
+        IMU: imu,
         CLOUD: partial(cloud, names=topic.fields),
         ODOMETRY: partial(odometry, child=topic.child_frame),
         POSE: pose_stamped,
@@ -205,7 +220,7 @@ class Lift:
         ramp = np.clip((slow * 1e-9 / self.duration_s - 0.4) / 0.3, 0, 1)
         arm = np.column_stack([-1.2 + 2.4 * ramp, 0.6 + 0.3 * ramp, 1.0 - 0.2 * ramp, 2.0 + 0 * ramp])
         signals = {
-            "/environment/wind": np.tile([self.wind_speed, 0, 0, 0, 0, 0], (len(slow), 1)),
+            "/environment/wind": np.tile([self.wind_speed, 0, 0, 0, 0, 0], (len(hot), 1)),
             "/vessel/odom": np.hstack([origin_w, turn.as_quat(), np.zeros((len(hot), 6))]),
             "/crane/tip": np.hstack([tip_w, still]),
             "/crane/base_wrench": base,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from shipcrane_twin.cosim.topics import CLOCK, CLOUD, DIAGNOSTICS, JOINTS, ODOMETRY, TOPICS, Topic
+from shipcrane_twin.cosim.topics import CLOCK, CLOUD, DIAGNOSTICS, IMU, JOINTS, ODOMETRY, TOPICS, Topic
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities, read_stamp
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
@@ -24,6 +24,9 @@ def numbers_of(message, topic):
 
     if topic.type == ODOMETRY:
         return np.array(flat(message.pose.pose) + flat(message.twist.twist))
+    if topic.type == IMU:
+        parts = (message.orientation, message.angular_velocity, message.linear_acceleration)
+        return np.concatenate([flat(part) for part in parts])
     if topic.type == CLOCK:
         return np.empty(0)
     if topic.type == CLOUD:
