@@ -26,6 +26,9 @@ from shipcrane_twin.physics.vessel_step import micro_steps
 from shipcrane_twin.physics.wind import WindParams
 
 CROSS_FLOW_STRIPS = 12
+TRIM_LEVER_MAX = 0.005
+"""Distance of CoG and centre of buoyancy along the ship, over its length, at which the database's waterline fails."""
+
 DATABASE_TOLERANCE = 1e-3
 """Relative difference at which a scenario's particulars are not those of the hull's database."""
 
@@ -99,6 +102,13 @@ def hydro_database(scenario: Scenario) -> HydroDatabase:
                 f"{scenario.name}: {key} is {value:g}, expected {stored:g} as in vessel.hull.hydrodynamics_file "
                 f"({path}); change it or build the database anew"
             )
+    lever = data.centre_of_buoyancy[0] - vessel.cog_m[0]
+    if abs(lever) > TRIM_LEVER_MAX * data.length:
+        raise ConfigError(
+            f"{scenario.name}: vessel.cog_m is {-lever:.2f} m ahead of the hull's centre of buoyancy, so that the ship "
+            f"would not float on an even keel; expected {data.centre_of_buoyancy[0]:.3f} m from the aft perpendicular, "
+            f"within {TRIM_LEVER_MAX * data.length:.2f} m; put crane, load and vessel.ballast where they are instead"
+        )
     afloat = data.restoring[2:5, 2:5]
     if np.linalg.eigvalsh(afloat).min() <= 0.0:
         raise ConfigError(

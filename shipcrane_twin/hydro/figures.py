@@ -110,7 +110,8 @@ def line_and_dots(
 ) -> None:
     """Draw what the database holds as a line and what its state-space model makes of it as dots, in thousands."""
     axes.plot(table[0], table[1] / 1e3, style, color=colour, linewidth=1.5, label=label)
-    axes.plot(fitted[0], fitted[1] / 1e3, ".", color=colour, markersize=3.5, label="its state space")
+    if np.any(fitted[1]):
+        axes.plot(fitted[0], fitted[1] / 1e3, ".", color=colour, markersize=3.5, label="its state space")
 
 
 def radiation(ships: Ships, title: str, letter: str, pairs: list[tuple[int, int]]) -> Figure:
@@ -123,7 +124,8 @@ def radiation(ships: Ships, title: str, letter: str, pairs: list[tuple[int, int]
             response = data.fit.response(fine)[:, i, j]
             fitted = data.added_mass_inf[i, j] + response.imag / fine if letter == "A" else response.real
             axes.plot(data.omega, table[:, i, j] / 1e3, style, color=colour, linewidth=1.5, label=f"{data.name}: table")
-            axes.plot(fine, fitted / 1e3, ".", color=colour, markersize=3.5, label="its state space")
+            if data.fit.c.any():
+                axes.plot(fine, fitted / 1e3, ".", color=colour, markersize=3.5, label="its state space")
             if letter == "A":
                 axes.plot(
                     last(ships), data.added_mass_inf[i, j] / 1e3, "<", color=colour, label="at infinite frequency"

@@ -13,6 +13,7 @@ from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import (
     cross,
     euler_from_matrix,
+    heading_cosines,
     matrix_from_quat,
     quat_rate,
     rotate_to_world,
@@ -140,7 +141,7 @@ def state_rate(
     weather: Array,
     water_w: Array,
     attached: Array,
-    heading: tuple[float, float],
+    heading: tuple[float, float, float],
 ) -> Array:
     """Return d(state)/dt (13 + r,).
 
@@ -158,8 +159,9 @@ def state_rate(
         Current, world [m/s].
     attached : float64, shape (10,)
         Rigid body carried along at crane_base: its inertia and its weight are added here.
-    heading : float, float
-        Yaw of the level axes [rad] and its rate [rad/s]: the ship's, without its motion at wave frequency.
+    heading : float, three times
+        Of the level axes: east and north part of the unit vector ahead, yaw rate [rad/s]. They follow the ship
+        without its motion at wave frequency.
 
     Raises
     ------
@@ -175,9 +177,9 @@ def state_rate(
     """
     nu_b = state[7:13]
     rot = matrix_from_quat(state[3:7])
-    roll, pitch, yaw = euler_from_matrix(rot)
+    roll, pitch, _ = euler_from_matrix(rot)
     yaw_rate = (nu_b[4] * rot[2, 1] + nu_b[5] * rot[2, 2]) / (rot[2, 1] * rot[2, 1] + rot[2, 2] * rot[2, 2])
-    ahead_x, ahead_y = np.cos(heading[0]), np.sin(heading[0])
+    ahead_x, ahead_y, turning = heading
     level = turned_axes(rot, ahead_x, ahead_y)
     hull = params.hull
 
@@ -197,12 +199,14 @@ def state_rate(
     rate = np.empty(state.shape[0])
     inertia = inertia_in(level, mass6)
     add_momentum_bias(total, inertia, nu)
-    add_added_mass_bias(total, hull, nu, relative, heading[1])
+    add_added_mass_bias(total, hull, nu, relative, turning)
     relative[5] = yaw_rate  # the heading's own; roll and pitch together turn about the vertical, too, on average
     add_viscous_load(total, hull, relative)
     add_memory_load(total, params.radiation, state[13:], relative, rate[13:])
     force_up, roll_moment, pitch_moment = restoring_load(hull, state[2], roll, pitch)
-    off_x, off_y = np.cos(yaw - heading[0]), np.sin(yaw - heading[0])
+    # the ship's momentary heading seen from the level axes
+    bow_x, bow_y = heading_cosines(rot)
+    off_x, off_y = ahead_x * bow_x + ahead_y * bow_y, ahead_x * bow_y - ahead_y * bow_x
     weight = -attached[0] * params.gravity
     arm_x = attached[1] + params.crane_base[0] - params.cog[0]
     arm_y = attached[2] + params.crane_base[1] - params.cog[1]
@@ -235,7 +239,7 @@ def vessel_step(
     weather_to: Array,
     water_w: Array,
     attached: Array,
-    heading: tuple[float, float],
+    heading: tuple[float, float, float],
     step_s: float,
 ) -> Array:
     """Return the state (13 + r,) one classical Runge-Kutta step later.

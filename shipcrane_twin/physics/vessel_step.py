@@ -109,12 +109,14 @@ def vessel_macro_step(
     for _ in range(steps):
         yaw = euler_from_matrix(matrix_from_quat(state[3:7]))[2]
         axis, turning = follow_angle(params.follow, axis, turning, yaw)
-        heading = (axis + 0.5 * micro_s * turning, turning)
+        middle = axis + 0.5 * micro_s * turning
+        heading = (np.cos(middle), np.sin(middle), turning)
         weather_from, weather_to = weather_to, weather_to + change
         state = vessel_step(
             params, mass6, state, steady_b, weather_from, weather_to, water_w, attached, heading, micro_s
         )
-    rates = state_rate(params, mass6, state, steady_b, weather_h, water_w, attached, (axis, turning))[7:13]
+    heading = (np.cos(axis), np.sin(axis), turning)
+    rates = state_rate(params, mass6, state, steady_b, weather_h, water_w, attached, heading)[7:13]
     new[STATE] = state[:13]
     new[RATES] = rates
     new[CARRIED] = carried_mean(params, attached, memory[STATE], memory[RATES], state, rates)

@@ -42,7 +42,8 @@ def ride(params: VesselParams, loads: WaveLoadParams, waves: Waves, step_s: floa
         load_to = first_order.copy()
         load_to[:2] += drift[:2]
         load_to[5] += drift[2]
-        state = vessel_step(params, mass6, state, no_load, load_from, load_to, still, NOTHING, (yaw, 0.0), step_s)
+        heading = (np.cos(yaw), np.sin(yaw), 0.0)
+        state = vessel_step(params, mass6, state, no_load, load_from, load_to, still, NOTHING, heading, step_s)
         roll, pitch, yaw = euler_from_matrix(matrix_from_quat(state[3:7]))
         out[k + 1] = np.array([state[0], state[1], state[2] - params.hull.design_height, roll, pitch, yaw])
     return out

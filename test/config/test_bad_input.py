@@ -73,7 +73,7 @@ OVERRIDES = {
     ),
     "asymmetric matrix": ("vessel.hull.viscous_damping_frd.0.1=1.0e+6", "viscous_damping_frd is [[0.0, "),
     "no such ballast": ("vessel.ballast.mode=water", "vessel.ballast.mode is 'water', expected 'none', 'level' or"),
-    "ballast that nothing reads": ("vessel.ballast={mode: none, roll_n_m: 5.0}", "is 'none', expected 'values', because"),
+    "ballast that nothing reads": ("vessel.ballast={mode: none, roll_n_m: 5.0}", "is 'none', expected 'values', "),
     "no such spectrum": (
         "environment.waves.systems=[{spectrum: pm, direction_to_deg: 0.0}]",
         "environment.waves.systems[0].spectrum is 'pm', expected 'regular', 'jonswap', 'pierson_moskowitz', ",

@@ -116,8 +116,9 @@ def test_a_spectrum_file_that_is_missing_is_named():
         ("constants.water_density_kg_m3=1000.0", "constants.water_density_kg_m3 is 1000, expected 1025"),
         ("vessel.cog_m=[15.516, 0.0, 6.0]", "the hull has no stiffness in heave, roll or pitch"),
         ("vessel.cog_m=[15.516, 0.5, 3.624]", "0.5 m off the centre line"),
+        ("vessel.cog_m=[16.516, 0.0, 3.624]", "1.00 m ahead of the hull's centre of buoyancy, so that the ship would"),
     ],
-    ids=["missing", "draught", "water", "capsizes", "off centre"],
+    ids=["missing", "draught", "water", "capsizes", "off centre", "trims"],
 )
 def test_a_database_of_another_ship_is_refused(change, said):
     with pytest.raises(ConfigError) as caught:

@@ -45,10 +45,15 @@ def heading_of(state):
     return np.arctan2(rot[1, 0], rot[0, 0]), rate
 
 
+def axes_along(yaw, rate):
+    """Level axes at a yaw, as the kernels take them."""
+    return np.cos(yaw), np.sin(yaw), rate
+
+
 def rate_of(ship, state, load_b, water_w, attached):
     """Rate of the state with the inertia that belongs to the attached body, level axes along the momentary heading."""
     mass6 = carried_inertia(ship, attached)
-    return state_rate(ship, mass6, state, load_b, NO_LOAD, water_w, attached, heading_of(state))
+    return state_rate(ship, mass6, state, load_b, NO_LOAD, water_w, attached, axes_along(*heading_of(state)))
 
 
 def held_step(ship, state, load_b, water_w, attached, step_s, heading=None):
@@ -57,7 +62,8 @@ def held_step(ship, state, load_b, water_w, attached, step_s, heading=None):
         yaw, rate = heading_of(state)
         heading = yaw + 0.5 * step_s * rate, rate
     mass6 = carried_inertia(ship, attached)
-    return vessel_step(ship, mass6, state, load_b, NO_LOAD, NO_LOAD, water_w, attached, heading, step_s)
+    axes = axes_along(*heading)
+    return vessel_step(ship, mass6, state, load_b, NO_LOAD, NO_LOAD, water_w, attached, axes, step_s)
 
 
 def alone(add, *args):
