@@ -45,9 +45,11 @@ class StepCollector:
     def add(self, topic: str, time_ns: int, message: bytes) -> None:
         """Take one message; writes every step that is complete with it."""
         step, off_grid = divmod(time_ns, self._step_ns)
-        if topic not in self._regular or off_grid or step <= self.complete:
+        if topic not in self._regular or off_grid:
             self._write(topic, time_ns, message)
             return
+        if step <= self.complete:
+            return  # the step has its message of this topic: a second one is that of another run in the domain
         self._pending.setdefault(step, {})[topic] = message
         following = self.complete + 1
         while len(self._pending.get(following, ())) >= len(self.wanted(following)):

@@ -89,6 +89,20 @@ class Operator:
         return self.heard[topic]
 
     def topics(self):
+        """What is known of the graph once nothing new comes and every end has the name of its node."""
+        last, since = {}, time.monotonic()
+
+        def settled():
+            nonlocal last, since
+            now = self.seen()
+            if now != last:
+                last, since = now, time.monotonic()
+            return "_NODE_NAME_UNKNOWN_" not in json.dumps(now) and time.monotonic() - since > 0.5
+
+        self.wait(settled)
+        return last
+
+    def seen(self):
         return {
             name: {
                 "types": types,
