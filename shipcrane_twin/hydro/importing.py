@@ -189,7 +189,7 @@ def symmetric(matrices: Array, where: str) -> Array:
 
 
 def no_fit(sections: int = 1) -> RadiationFit:
-    """Return a state-space model that exerts nothing: the placeholder before the fit."""
+    """Return a state-space model that exerts nothing: radiation without memory."""
     return RadiationFit(
         a=np.tile(-np.eye(2), (2, sections, 1, 1)), b=np.zeros((2, sections, 2)), c=np.zeros((2, 3, 3, sections, 2))
     )

@@ -13,9 +13,9 @@ from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.hydro.build import hull_hydrostatics, hull_mesh, read_hull
 from shipcrane_twin.hydro.hull_form import half_breadth, section_points
 from shipcrane_twin.hydro.mesh import hydrostatics, lid_panels
+from test.hydro.imported_ships import SHIPX
 
 HULL = Path(__file__).parents[2] / "config" / "vessels" / "gunnerus" / "hull.yaml"
-REFERENCE = Path("/work/shared/reference/gunnerus_shipx/ShipModel.zip")
 
 VOLUME, KB, C33, C44, C55 = 493.472e3 / 1025.0, 1.591, 2.7320945e6, 7.9895465e6, 2.0532877e8
 """ShipX: displacement and VCB of vesselcoeff.xml, restoring matrix of retfun.re10."""
@@ -122,11 +122,11 @@ def test_close_to_the_real_ship(config, measured):
     assert found.centre_of_buoyancy[0] == pytest.approx(config.cog_m[0], abs=0.002)  # floats on even keel
 
 
-@pytest.mark.skipif(not REFERENCE.is_file(), reason="the reference data are not on this machine")
+@pytest.mark.skipif(not SHIPX.is_file(), reason="the reference data are not on this machine")
 def test_waterline_follows_the_real_one(config):
     import zipfile
 
-    with zipfile.ZipFile(REFERENCE) as archive:
+    with zipfile.ZipFile(SHIPX) as archive:
         name = next(name for name in archive.namelist() if name.endswith("waterline.asc"))
         rows = np.loadtxt(archive.read(name).decode().splitlines(), skiprows=2)
     port = rows[1 : len(rows) // 2]
