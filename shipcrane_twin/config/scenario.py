@@ -1,5 +1,6 @@
 """A scenario: everything a run depends on, and the checks across its parts."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
@@ -20,6 +21,10 @@ from shipcrane_twin.config.vessel import VesselConfig
 NS_PER_MS = 1_000_000
 NS_PER_S = 1_000_000_000
 WINCH = "winch"
+
+SENSORS = ("position", "gyro", "mru", "wind")
+THRUSTER_FAULTS = ("none", "failed", "frozen", "limited", "runaway")
+SENSOR_FAULTS = ("none", "drop_out", "frozen")
 
 
 @settings
@@ -56,14 +61,15 @@ class OperationConfig:
 class EventConfig:
     """Something that happens at one time.
 
-    ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it does
-    from then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is position, gyro, mru or
-    wind; it drops out or freezes. ``power_limit``: ``share`` of the total power is left. The fault none repairs.
+    ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it
+    does from then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is a sensor; it
+    drops out or freezes. The fault none repairs. ``power_limit``: ``share`` of the total power is left. ``dp_on``,
+    ``dp_off``: from then on ``dp.enabled_at_s`` has no say.
     """
 
     label: Text
     at_s: NotNegative
-    event: Literal["release_payload", "thruster_fault", "sensor_fault", "power_limit"]
+    event: Literal["release_payload", "thruster_fault", "sensor_fault", "power_limit", "dp_on", "dp_off"]
     which: Text | None = None
     fault: Literal["none", "failed", "frozen", "limited", "runaway", "drop_out"] | None = None
     share: Annotated[Number, Ge(0), Le(1)] | None = None
@@ -203,7 +209,7 @@ def sensor_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     """Check that every sensor's period is a whole multiple of the DP's."""
     dp = scenario.dp
     found: list[tuple[list[str | int], str]] = []
-    for name in () if dp.sensors.perfect else ("position", "gyro", "mru", "wind"):
+    for name in () if dp.sensors.perfect else SENSORS:
         ratio = getattr(dp.sensors, name).period_ms / dp.period_ms
         if ratio < 1.0 or abs(ratio - round(ratio)) > 1e-9:
             advice = f"expected a whole multiple of dp.period_ms = {dp.period_ms:g}"
@@ -213,30 +219,29 @@ def sensor_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
 
 def event_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     """Check that events name parts that exist, and say what happens to them."""
-    found: list[tuple[list[str | int], str]] = []
     thrusters = [thruster.name for thruster in scenario.vessel.thrusters]
-    parts = {"thruster_fault": thrusters, "sensor_fault": ["position", "gyro", "mru", "wind"]}
-    faults = {
-        "thruster_fault": ["none", "failed", "frozen", "limited", "runaway"],
-        "sensor_fault": ["none", "drop_out", "frozen"],
+    return [
+        (["events", i, key], advice)
+        for i, event in enumerate(scenario.events)
+        for key, advice in wrong_keys(event, thrusters)
+    ]
+
+
+def wrong_keys(event: EventConfig, thrusters: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the keys of an event that are wrong for its kind, with what is expected of each."""
+    kinds: dict[str, tuple[Sequence[str], Sequence[str]]] = {
+        "thruster_fault": (thrusters, THRUSTER_FAULTS),
+        "sensor_fault": (SENSORS, SENSOR_FAULTS),
     }
-    for i, event in enumerate(scenario.events):
-        here: list[str | int] = ["events", i]
-        known = parts.get(event.event, [None])
-        if event.which not in known:
-            found.append(([*here, "which"], f"expected {one_of(known)} with the event {event.event}"))
-        if event.fault not in faults.get(event.event, [None]):
-            told = one_of(faults.get(event.event, [None]))
-            found.append(([*here, "fault"], f"expected {told} with the event {event.event}"))
-        wants_share = event.event == "power_limit" or event.fault == "limited"
-        if wants_share != (event.share is not None):
-            found.append(([*here, "share"], f"expected {'a share' if wants_share else 'none'} with {event.event}"))
+    which, faults = kinds.get(event.event, ((), ()))
+    found = []
+    for key, given, names in (("which", event.which, which), ("fault", event.fault, faults)):
+        if (given not in names) if names else (given is not None):
+            told = f"one of {', '.join(names)}" if names else "none"
+            found.append((key, f"expected {told} with the event {event.event}"))
+    if (event.event == "power_limit" or event.fault == "limited") != (event.share is not None):
+        found.append(("share", f"expected {'none' if event.share is not None else 'a share'} with {event.event}"))
     return found
-
-
-def one_of(names: list[str] | list[None]) -> str:
-    """Return names for a message."""
-    return "one of " + ", ".join(map(str, names)) if names != [None] else "none"
 
 
 def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:

@@ -75,8 +75,8 @@ class WindAreasConfig:
 class ThrusterConfig:
     """One thruster; a tunnel thruster pushes sideways only, to both sides.
 
-    ``thrust_max_n`` is what reaches the ship at full power, the ship at rest. Each row of ``forbidden_deg`` is centre and
-    half width of a sector into which the thrust must not point, anticlockwise from forward. The advance numbers
+    ``thrust_max_n`` is what reaches the ship at full power, the ship at rest. Each row of ``forbidden_deg`` is centre
+    and half width of a sector into which the thrust must not point, anticlockwise from forward. The advance numbers
     J = V / (n D) are those at which the propeller gives no thrust and takes no torque.
     """
 

@@ -32,7 +32,10 @@ their model from drifting, and the bias takes up the difference."""
 WAVE_PERIODS_S = (3.0, 25.0)
 """Range of the estimated wave period [s]."""
 
-FREQUENCY_MEMORY_S, FREQUENCY_FLOOR_RAD = 120.0, 1e-4
+HEAVE_CORNER = 0.15
+"""Below this frequency the heave that tells the waves' frequency fades [rad/s]."""
+
+FREQUENCY_MEMORY_S, FREQUENCY_FLOOR_M = 120.0, 0.02
 VELOCITY_START_STD = (0.2, 0.2, 0.005)
 """What the Kalman filter believes of the velocity at its start [m/s, m/s, rad/s]."""
 
@@ -201,7 +204,7 @@ def frequency_of(dp: DpConfig) -> FrequencyParams:
         lowest=2.0 * np.pi / longest,
         highest=2.0 * np.pi / shortest,
         memory_s=FREQUENCY_MEMORY_S,
-        floor=FREQUENCY_FLOOR_RAD,
+        floor=FREQUENCY_FLOOR_M,
     )
 
 

@@ -1,9 +1,11 @@
 """Dynamic positioning as one chain: sensors, observer, reference model, controller, thrust allocation."""
 
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
+from shipcrane_twin.config.dp import SetpointConfig, TimedSetpointConfig
 from shipcrane_twin.config.scenario import NS_PER_S, EventConfig, Scenario
 from shipcrane_twin.control.allocation import allocate, allocation_start, horizontal_load
 from shipcrane_twin.control.controller import controller_start, controller_update
@@ -12,14 +14,14 @@ from shipcrane_twin.control.ekf import ekf_start, ekf_step
 from shipcrane_twin.control.observer import passive_start, passive_step
 from shipcrane_twin.control.observer_model import observer_age, observer_bias, observer_pose, observer_velocity
 from shipcrane_twin.control.reference import POSE, reference_start, reference_step
-from shipcrane_twin.control.wave_frequency import frequency_start, frequency_step, wave_frequency
+from shipcrane_twin.control.wave_frequency import frequency_start, frequency_step, heave_step, wave_frequency
 from shipcrane_twin.control.weathervane import weathervane_step
 from shipcrane_twin.cosim import build, dp_build
+from shipcrane_twin.cosim.dp_faults import DpFaults
 from shipcrane_twin.cosim.weather import SENSORS, stream
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.frames import matrix_from_quat, quat_from_euler, yaw_from_heading
+from shipcrane_twin.physics.frames import matrix_from_quat, quat_from_euler, wrap_angle, yaw_from_heading
 from shipcrane_twin.physics.propeller import speed_for_thrust
-from shipcrane_twin.physics.propulsion import FAILED, FROZEN, LIMITED, OK, RUNAWAY
 from shipcrane_twin.physics.sensors import (
     antenna_position,
     gyro_heading,
@@ -28,13 +30,15 @@ from shipcrane_twin.physics.sensors import (
     relative_wind,
     sensor_start,
     sensor_step,
+    vertical_acceleration,
 )
 from shipcrane_twin.physics.wind import wind_load
 
-THRUSTER_FAULTS = {"none": OK, "failed": FAILED, "frozen": FROZEN, "limited": LIMITED, "runaway": RUNAWAY}
-LOST_TO_DP = (FAILED, FROZEN, RUNAWAY)
-PITCH = 1
-"""Column of the motion reference unit whose oscillation tells the waves' frequency."""
+IDLE_SHARE = 0.01
+"""Of `load_max`: a demand below it while DP is off leaves the thrusters idle."""
+
+SHORT_SHARE = 1e-3
+"""Of `load_max`: what the thrusters give less than asked for that is worth a warning."""
 
 
 @dataclass(slots=True)
@@ -99,10 +103,9 @@ class Positioning:
         self.measured = {name: np.full(p.noise_std.size, np.nan) for name, p in self._sensors.items()}
         self._cog = np.array(scenario.vessel.cog_m)
         self._crane_arm = np.array(scenario.crane.base_m) - self._cog
-        self._names = [thruster.name for thruster in scenario.vessel.thrusters]
 
         self._observer = ekf_start(self._ekf, pose) if dp.observer.kind == "ekf" else passive_start(self._passive, pose)
-        self._frequency_state = frequency_start(self._frequency)
+        self._frequency_state, self._heave = frequency_start(self._frequency), np.zeros(2)
         self._controller_state = controller_start()
         self._reference_state = reference_start(self._reference, pose, np.zeros(3))
         self._weathervane_state = np.zeros(2)
@@ -110,21 +113,19 @@ class Positioning:
         self._achieved = np.zeros(3)
         self.pose, self.velocity_b, self.demand = pose.copy(), np.zeros(3), np.zeros(3)
         self.command = np.column_stack((azimuth, np.zeros_like(azimuth)))
-        self.switched_on = True
+        self._switch: bool | None = None
         self.on = False
 
         self._setpoint = np.zeros(3)
         self._setpoints = [(0, self._pose_of(dp.setpoint))]
         self._setpoints += [(round(point.at_s * NS_PER_S), self._pose_of(point)) for point in dp.setpoints]
-        self._events = sorted((event for event in scenario.events if event.which or event.share is not None), key=_start)
-        self.fault = np.zeros(len(self._names), dtype=np.int64)
-        self.share = np.ones(len(self._names))
-        self.power_share = 1.0
-        self._sensor_fault: dict[str, str] = {}
+        self.faults = DpFaults([thruster.name for thruster in scenario.vessel.thrusters])
+        own = (event for event in scenario.events if event.event != "release_payload")
+        self._events = sorted(own, key=attrgetter("at_s"))
 
     @staticmethod
-    def _pose_of(point: "object") -> Array:
-        return np.array([point.east_m, point.north_m, yaw_from_heading(point.heading_deg)])  # type: ignore[attr-defined]
+    def _pose_of(point: SetpointConfig | TimedSetpointConfig) -> Array:
+        return np.array([point.east_m, point.north_m, yaw_from_heading(point.heading_deg)])
 
     @property
     def bias_b(self) -> Array:
@@ -138,46 +139,42 @@ class Positioning:
 
     def update(self, time_ns: int, truth: Truth) -> None:
         """Run the chain once; `command` holds the thrusters' commands afterwards."""
-        self._take_events(time_ns)
+        while self._events and round(self._events[0].at_s * NS_PER_S) <= time_ns:
+            self.happen(self._events.pop(0))
         measured = self._measure(truth)
         self._estimate(measured, truth)
         self._control(time_ns, truth)
 
-    def place_order(self, setpoint: Array) -> None:
-        """Take an operator's set-point (east, north, yaw), which replaces the scenario's."""
-        self._setpoints = [(0, np.asarray(setpoint, float))]
+    def move_to(self, pose: Array) -> None:
+        """Take an operator's set-point (east, north, yaw), which replaces the scenario's from now on."""
+        self._setpoints = [(0, np.asarray(pose, float))]
+
+    def happen(self, event: EventConfig) -> None:
+        """Let an event happen, of the scenario or by an operator's order."""
+        if event.event in ("dp_on", "dp_off"):
+            self._switch = event.event == "dp_on"
+        else:
+            self.faults.happen(event)
 
     def warnings(self) -> list[str]:
         """Return what an operator should know now."""
-        told = [f"thruster {name}: {_named(code)}" for name, code in zip(self._names, self.fault, strict=True) if code]
-        told += [f"sensor {name}: {fault.replace('_', ' ')}" for name, fault in self._sensor_fault.items()]
+        told = self.faults.told()
         age = observer_age(self._observer)
         lost = [axis for axis, seconds in zip(("east", "north", "heading"), age, strict=True) if seconds > self._lost_s]
         if lost:
             told.append(f"dead reckoning: no {', '.join(lost)} for {age.max():.0f} s")
-        if self.power_share < 1.0:
-            told.append(f"power limited to {100 * self.power_share:.0f} %")
-        if self.on and np.abs(self.demand - self._achieved).max() > 1e-3 * np.abs(self._controller.load_max).max():
-            told.append("thrust is not enough for what DP asks for")
+        if self.on and (np.abs(self.demand - self._achieved) > SHORT_SHARE * self._controller.load_max).any():
+            told.append("the thrusters cannot give what DP asks for")
         return told
+
+    def deviation(self) -> tuple[float, float]:
+        """Return how far the estimated place [m] and heading [rad] are off the set-point."""
+        east, north, yaw = self.pose - self._setpoint
+        return float(np.hypot(east, north)), abs(float(wrap_angle(yaw)))
 
     @property
     def _lost_s(self) -> float:
         return self._dp.observer.lost_after_s
-
-    def _take_events(self, time_ns: int) -> None:
-        while self._events and round(self._events[0].at_s * NS_PER_S) <= time_ns:
-            event = self._events.pop(0)
-            if event.event == "power_limit":
-                self.power_share = 1.0 if event.share is None else event.share
-            elif event.event == "thruster_fault":
-                i = self._names.index(event.which or "")
-                self.fault[i] = THRUSTER_FAULTS[event.fault or "failed"]
-                self.share[i] = 1.0 if event.share is None else event.share
-            elif event.event == "sensor_fault":
-                self._sensor_fault.pop(event.which or "", None)
-                if event.fault != "none":
-                    self._sensor_fault[event.which or ""] = event.fault or "drop_out"
 
     def _measure(self, truth: Truth) -> Array:
         """Run the sensors; return position of the CoG and heading (3,) as far as they are new."""
@@ -191,7 +188,7 @@ class Positioning:
         new = {}
         for name, params in self._sensors.items():
             draws = self._rng.standard_normal(2 * params.noise_std.size)
-            fault = self._sensor_fault.get(name)
+            fault = self.faults.sensor.get(name)
             state, found = sensor_step(params, self._sensor_states[name], truths[name], draws, fault == "drop_out")
             self._sensor_states[name] = state
             if fault == "frozen" and np.isfinite(found).all():
@@ -208,7 +205,9 @@ class Positioning:
         observer = self._dp.observer
         omega = 2.0 * np.pi / observer.wave_period_s
         if observer.adaptive:
-            self._frequency_state = frequency_step(self._frequency, self._frequency_state, self.measured["mru"][PITCH])
+            up = vertical_acceleration(self.measured["mru"], self._gravity)
+            self._heave = heave_step(self._heave, up, dp_build.HEAVE_CORNER, self._frequency.period)
+            self._frequency_state = frequency_step(self._frequency, self._frequency_state, self._heave[0])
             omega = wave_frequency(self._frequency_state)
         if observer.kind == "none":
             self.pose = np.where(np.isfinite(measured), measured, self.pose)
@@ -217,13 +216,16 @@ class Positioning:
         known = horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust) + self._wind_load()
         if self._dp.controller.crane_share > 0.0:
             known += self._crane_load(truth)
-        step, params = (ekf_step, self._ekf) if observer.kind == "ekf" else (passive_step, self._passive)
-        self._observer = step(params, self._observer, measured, known, np.full(3, omega))  # type: ignore[operator]
+        waves = np.full(3, omega)
+        if observer.kind == "ekf":
+            self._observer = ekf_step(self._ekf, self._observer, measured, known, waves)
+        else:
+            self._observer = passive_step(self._passive, self._observer, measured, known, waves)
         self.pose, self.velocity_b = observer_pose(self._observer), observer_velocity(self._observer)
 
     def _control(self, time_ns: int, truth: Truth) -> None:
         was_on = self.on
-        self.on = self.switched_on and time_ns >= round(self._dp.enabled_at_s * NS_PER_S)
+        self.on = time_ns >= round(self._dp.enabled_at_s * NS_PER_S) if self._switch is None else self._switch
         if self.on and not was_on:
             cos, sin = np.cos(self.pose[2]), np.sin(self.pose[2])
             surge, sway, turn = self.velocity_b
@@ -255,9 +257,10 @@ class Positioning:
 
     def _allocate(self, truth: Truth) -> None:
         """Share the demand among the thrusters that obey; the others' push is taken off it."""
-        lost = np.isin(self.fault, LOST_TO_DP)
-        stray = horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust * lost)
-        available = np.where(lost, 0.0, np.where(self.fault == LIMITED, self.share, 1.0))
+        available = self.faults.available
+        stray = horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust * (available == 0.0))
+        if not self.on and (np.abs(self.demand) < IDLE_SHARE * self._controller.load_max).all():
+            available = np.zeros_like(available)
         self._allocation_state, given = allocate(
             self._allocation, self._allocation_state, self.demand - stray, truth.thruster_state[:, 0], available
         )
@@ -278,10 +281,3 @@ class Positioning:
         rot = matrix_from_quat(quat_from_euler(roll, pitch, np.nan_to_num(self.measured["gyro"][0])))
         return crane_horizontal(truth.crane_wrench, self._crane_arm, rot)
 
-
-def _start(event: EventConfig) -> float:
-    return event.at_s
-
-
-def _named(code: int) -> str:
-    return next(name for name, number in THRUSTER_FAULTS.items() if number == code)

@@ -300,6 +300,21 @@ TOPICS: tuple[Topic, ...] = (
         about="Velocity wanted of the named joints, held until the next message [rad/s, m/s].",
     ),
     Topic(
+        name="/dp/setpoint",
+        type=POSE,
+        publisher="operator",
+        rate="irregular",
+        frame="map",
+        about="Wanted position of the CoG (height is not read) and heading; replaces the scenario's set-points.",
+    ),
+    Topic(
+        name="/vessel/orders",
+        type=DIAGNOSTICS,
+        publisher="vessel",
+        rate="irregular",
+        about="Every order that the vessel took, stamped with the start of the step in which it takes effect.",
+    ),
+    Topic(
         name="/recorder/progress",
         type=CLOCK,
         publisher="recorder",

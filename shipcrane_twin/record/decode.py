@@ -64,7 +64,9 @@ _FIELDS: dict[str, tuple[str, ...]] = {
         ("inertia", ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")),
     ),
 }
-_COVARIANCE = 36  # doubles after the pose and after the twist of Odometry
+_WITH_COVARIANCE = {ODOMETRY: ((7, 36), (6, 36)), IMU: ((4, 9), (3, 9), (3, 9))}
+"""How many doubles are wanted, and how many of covariance come after them, part by part."""
+
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +117,32 @@ class _Walk:
         self.at += 8 * count
 
 
+def _read_through(msgtype: str, walk: _Walk) -> tuple[str, str, tuple[str, ...]] | None:
+    """Walk through a message; return frame, child frame and joint names, None for arrays of unequal length."""
+    frame_id = child_frame_id = ""
+    names: tuple[str, ...] = ()
+    if msgtype != CLOCK:
+        frame_id = walk.string()
+    if msgtype == ODOMETRY:
+        child_frame_id = walk.string()
+    if msgtype in _WITH_COVARIANCE:
+        for count, covariance in _WITH_COVARIANCE[msgtype]:
+            walk.doubles(count)
+            walk.doubles(covariance, keep=False)
+    elif msgtype == JOINT_STATE:
+        names = tuple(walk.string() for _ in range(walk.count()))
+        for _ in range(3):
+            count = walk.count()
+            if count not in (0, len(names)):
+                return None
+            walk.doubles(count)
+            if not count:
+                walk.numbers[-1] = (-1, len(names))
+    else:
+        walk.doubles(len(COLUMNS[msgtype]))
+    return frame_id, child_frame_id, names
+
+
 def decode_block(msgtype: str, rows: NDArray[np.uint8]) -> Block | None:
     """Decode messages of equal length, one per row, by columns.
 
@@ -132,34 +160,13 @@ def decode_block(msgtype: str, rows: NDArray[np.uint8]) -> Block | None:
     """
     first = rows[0].tobytes()
     walk = _Walk(first, 12, [slice(0, 2)])
-    frame_id = child_frame_id = ""
-    names: tuple[str, ...] = ()
     try:
-        if msgtype != CLOCK:
-            frame_id = walk.string()
-        if msgtype == ODOMETRY:
-            child_frame_id = walk.string()
-            walk.doubles(7)
-            walk.doubles(_COVARIANCE, keep=False)
-            walk.doubles(6)
-            walk.doubles(_COVARIANCE, keep=False)
-        elif msgtype == IMU:
-            for count in (4, 3, 3):
-                walk.doubles(count)
-                walk.doubles(9, keep=False)
-        elif msgtype == JOINT_STATE:
-            names = tuple(walk.string() for _ in range(walk.count()))
-            for _ in range(3):
-                count = walk.count()
-                if count not in (0, len(names)):
-                    return None
-                walk.doubles(count)
-                if not count:
-                    walk.numbers[-1] = (-1, len(names))
-        else:
-            walk.doubles(len(COLUMNS[msgtype]))
+        texts = _read_through(msgtype, walk)
     except (struct.error, UnicodeDecodeError):
         return None
+    if texts is None:
+        return None
+    frame_id, child_frame_id, names = texts
     little_endian = first[:2] == b"\x00\x01"
     padding = len(first) - walk.at
     if not little_endian or not 0 <= padding < 4 or len(set(names)) != len(names):

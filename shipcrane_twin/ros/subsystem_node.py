@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 from rclpy.executors import SingleThreadedExecutor
@@ -36,6 +37,8 @@ DONE_TOPIC = {name: [t.name for t in published_by(name) if t.rate == "step"][-1]
 SERVICE_PERIOD_S = 0.1
 """Wall time between two looks at parameters and services."""
 
+Desk = Callable[[Node, Participant, int], object]
+
 KINDS = ("wait", "decode", "physics", "encode", "publish")
 
 
@@ -59,9 +62,11 @@ class SubsystemNode:
     name : str
         Subsystem of the chain, also the node's name.
     stop : StopFlag
+    desk : callable, optional
+        Makes what takes an operator's orders for this subsystem, from node and participant.
     """
 
-    def __init__(self, name: str, stop: StopFlag) -> None:
+    def __init__(self, name: str, stop: StopFlag, desk: Desk | None = None) -> None:
         self.name = name
         self._stop = stop
         self.node = Node(name)
@@ -82,7 +87,7 @@ class SubsystemNode:
         obeys = hasattr(self._participant.subsystem, "commands")
         self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
-        topics = published_by(name)
+        topics = [topic for topic in published_by(name) if topic.rate != "irregular"]
         self._templates = {topic.name: Template(topic) for topic in topics}
         self._publishers = {
             topic.name: self.node.create_publisher(
@@ -91,6 +96,7 @@ class SubsystemNode:
             for topic in topics
         }
         self._expected = step_listeners(run.recorded)
+        self._desk = desk(self.node, self._participant, scenario.step_ns) if desk else None
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)
         self._service_at = 0.0
@@ -232,11 +238,11 @@ def warm_up(name: str, scenario: Scenario) -> None:
     scratch.step(1, {topic: signals[topic] for topic in INPUTS[name]})
 
 
-def run_subsystem(name: str, stop: StopFlag) -> None:
-    """Run a subsystem's node until it is told to stop."""
+def run_subsystem(name: str, stop: StopFlag, desk: Desk | None = None) -> None:
+    """Run a subsystem's node until it is told to stop; see `SubsystemNode`."""
 
     def body(stop: StopFlag) -> None:
-        runner = SubsystemNode(name, stop)
+        runner = SubsystemNode(name, stop, desk)
         try:
             runner.run()
         finally:

@@ -88,7 +88,8 @@ def busy():
     ]
     data["events"] = [
         {"label": "drop", "at_s": 0.4, "event": "release_payload"},
-        {"label": "weak", "at_s": 0.3, "event": "thruster_fault", "which": "bow_tunnel", "fault": "limited", "share": 0.4},
+        {"label": "weak", "at_s": 0.3, "event": "thruster_fault", "which": "bow_tunnel", "fault": "limited"}
+        | {"share": 0.4},
         {"label": "blackout", "at_s": 0.5, "event": "power_limit", "share": 0.001},
         {"label": "no fix", "at_s": 0.1, "event": "sensor_fault", "which": "position", "fault": "drop_out"},
         {"label": "fix", "at_s": 0.4, "event": "sensor_fault", "which": "position", "fault": "none"},

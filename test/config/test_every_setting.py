@@ -89,7 +89,8 @@ PATHS = list(numbers(busy()))
 
 
 def test_every_number_changes_the_run_or_is_listed():
-    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered(), "long": at_ends(1), "short": at_ends(-1)}
+    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered()}
+    stages |= {"long": at_ends(1), "short": at_ends(-1)}
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):

@@ -13,6 +13,7 @@ from shipcrane_twin.control.azimuth_sectors import (
     reach,
     turn_towards,
 )
+from shipcrane_twin.physics.frames import wrap_angle
 
 compiled = settings(deadline=None, max_examples=60)
 ZONES = [(0.5, 0.3), (-2.0, 0.6)]
@@ -29,6 +30,8 @@ def in_some_zone(azimuth, zones):
 @compiled
 @given(azimuth=angles)
 def test_an_azimuth_is_in_an_arc_and_in_a_convex_piece_or_in_a_zone(azimuth):
+    if any(abs(abs(wrap_angle(azimuth - centre)) - half) < 1e-9 for centre, half in ZONES):
+        return  # on a border it is in both
     free = not in_some_zone(azimuth, ZONES)
     assert (arc_place(TWO, azimuth)[0] >= 0) == free
     pieces = convex_pieces(allowed_arcs(ZONES))

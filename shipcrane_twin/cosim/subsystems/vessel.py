@@ -33,6 +33,7 @@ class Vessel:
         self._memory[THRUST : THRUST + 2 * count : 2] = azimuth
         self.positioning = Positioning(scenario, np.array([rest.vessel[0], rest.vessel[1], yaw]), azimuth)
         self._count = count
+        self.thruster_names = tuple(thruster.name for thruster in scenario.vessel.thrusters)
         self._crane = np.zeros(6)
         self._wind_w = np.zeros(3)
 
@@ -49,11 +50,11 @@ class Vessel:
         self._wind_w = inputs["/environment/wind"][:3]
         self._memory = vessel_macro_step(
             self._params,
-            dp.thrusters._replace(power_total_max=dp.thrusters.power_total_max * dp.power_share),
+            dp.thrusters._replace(power_total_max=dp.thrusters.power_total_max * dp.faults.power_share),
             self._memory,
             dp.command,
-            dp.fault,
-            dp.share,
+            dp.faults.thruster,
+            dp.faults.share,
             inputs["/environment/wave_wrench"] + inputs["/environment/wind_wrench"],
             self._crane,
             inputs["/crane/base_inertia"] * self._carries,
