@@ -101,8 +101,14 @@ class Positioning:
             for name, params in self._sensors.items()
         }
         self.measured = {name: np.full(p.noise_std.size, np.nan) for name, p in self._sensors.items()}
-        self._cog = np.array(scenario.vessel.cog_m)
-        self._crane_arm = np.array(scenario.crane.base_m) - self._cog
+        cog = np.array(scenario.vessel.cog_m)
+        self._crane_arm = np.array(scenario.crane.base_m) - cog
+        sensors = dp.sensors
+        self._antenna, self._mru, self._mast = map(
+            np.array, (sensors.position.antenna_m, sensors.mru.place_m, sensors.wind.place_m)
+        )
+        self._antenna_arm = self._antenna - cog
+        self._knows_crane = dp.controller.crane_share > 0.0
 
         self._observer = ekf_start(self._ekf, pose) if dp.observer.kind == "ekf" else passive_start(self._passive, pose)
         self._frequency_state, self._heave = frequency_start(self._frequency), np.zeros(2)
@@ -142,8 +148,10 @@ class Positioning:
         while self._events and round(self._events[0].at_s * NS_PER_S) <= time_ns:
             self.happen(self._events.pop(0))
         measured = self._measure(truth)
-        self._estimate(measured, truth)
-        self._control(time_ns, truth)
+        wind = self._wind_load()
+        crane = self._crane_load(truth) if self._knows_crane else np.zeros(3)
+        self._estimate(measured, truth, wind + crane)
+        self._control(time_ns, truth, wind, crane)
 
     def move_to(self, pose: Array) -> None:
         """Take an operator's set-point (east, north, yaw), which replaces the scenario's from now on."""
@@ -178,30 +186,30 @@ class Positioning:
 
     def _measure(self, truth: Truth) -> Array:
         """Run the sensors; return position of the CoG and heading (3,) as far as they are new."""
-        sensors = self._dp.sensors
+        odom = truth.odom
         truths = {
-            "position": antenna_position(truth.odom, np.array(sensors.position.antenna_m)),
-            "gyro": gyro_heading(truth.odom),
-            "mru": mru_motion(truth.odom, truth.accel, np.array(sensors.mru.place_m), self._gravity),
-            "wind": relative_wind(truth.odom, truth.wind_w, np.array(sensors.wind.place_m)),
+            "position": antenna_position(odom, self._antenna),
+            "gyro": gyro_heading(odom),
+            "mru": mru_motion(odom, truth.accel, self._mru, self._gravity),
+            "wind": relative_wind(odom, truth.wind_w, self._mast),
         }
         new = {}
         for name, params in self._sensors.items():
             draws = self._rng.standard_normal(2 * params.noise_std.size)
             fault = self.faults.sensor.get(name)
-            state, found = sensor_step(params, self._sensor_states[name], truths[name], draws, fault == "drop_out")
-            self._sensor_states[name] = state
-            if fault == "frozen" and np.isfinite(found).all():
-                found = self.measured[name].copy()
-            new[name] = found
+            self._sensor_states[name], found = sensor_step(
+                params, self._sensor_states[name], truths[name], draws, fault == "drop_out"
+            )
             if np.isfinite(found).all():
+                if fault == "frozen":
+                    found = self.measured[name].copy()
                 self.measured[name] = found
+            new[name] = found
         roll, pitch = self.measured["mru"][:2]
-        arm = np.array(sensors.position.antenna_m) - self._cog
-        place = reference_point(new["position"], arm, roll, pitch, self.measured["gyro"][0])
+        place = reference_point(new["position"], self._antenna_arm, roll, pitch, self.measured["gyro"][0])
         return np.array([place[0], place[1], new["gyro"][0]])
 
-    def _estimate(self, measured: Array, truth: Truth) -> None:
+    def _estimate(self, measured: Array, truth: Truth, known: Array) -> None:
         observer = self._dp.observer
         omega = 2.0 * np.pi / observer.wave_period_s
         if observer.adaptive:
@@ -213,9 +221,7 @@ class Positioning:
             self.pose = np.where(np.isfinite(measured), measured, self.pose)
             self.velocity_b = truth.odom[[7, 8, 12]]
             return
-        known = horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust) + self._wind_load()
-        if self._dp.controller.crane_share > 0.0:
-            known += self._crane_load(truth)
+        known = known + horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust)
         waves = np.full(3, omega)
         if observer.kind == "ekf":
             self._observer = ekf_step(self._ekf, self._observer, measured, known, waves)
@@ -223,7 +229,7 @@ class Positioning:
             self._observer = passive_step(self._passive, self._observer, measured, known, waves)
         self.pose, self.velocity_b = observer_pose(self._observer), observer_velocity(self._observer)
 
-    def _control(self, time_ns: int, truth: Truth) -> None:
+    def _control(self, time_ns: int, truth: Truth, wind: Array, crane: Array) -> None:
         was_on = self.on
         self.on = time_ns >= round(self._dp.enabled_at_s * NS_PER_S) if self._switch is None else self._switch
         if self.on and not was_on:
@@ -249,8 +255,8 @@ class Positioning:
             self._reference_state,
             self.pose,
             self.velocity_b,
-            self._wind_load(),
-            self._crane_load(truth),
+            wind,
+            crane,
             self._achieved,
         )
         self._allocate(truth)
