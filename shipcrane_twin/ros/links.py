@@ -162,19 +162,28 @@ def listeners_matched(node: Node, publishers: dict[str, Any], expected: dict[str
     return missing
 
 
-def refuse_rivals(node: Node, topics: Iterable[str]) -> None:
+def refuse_rivals(node: Node, topics: Iterable[str], ours: int = 1, wait_s: float = DISCOVERY_S) -> None:
     """Make sure that nobody else publishes a node's topics: two runs in one domain would spoil each other.
+
+    Parameters
+    ----------
+    node : Node
+    topics : iterable of str
+    ours : int
+        How many publishers of each topic are this run's.
+    wait_s : float
+        Wall time to leave others to make themselves known.
 
     Raises
     ------
     ConfigError
         Naming topic, domain and remedy.
     """
-    time.sleep(DISCOVERY_S)
+    time.sleep(wait_s)
     for topic in topics:
-        if node.count_publishers(topic) > 1:
+        if node.count_publishers(topic) > ours:
             domain = node.context.get_domain_id()
             raise ConfigError(
-                f"{node.get_name()}: {topic} has more than one publisher in ROS domain {domain}; another run is under "
-                "way there: wait for its end, or set another ROS_DOMAIN_ID for this one"
+                f"{node.get_name()}: {topic} has a publisher of another run in ROS domain {domain}: wait for its end, "
+                "or set another ROS_DOMAIN_ID for this one"
             )

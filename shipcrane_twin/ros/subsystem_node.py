@@ -88,6 +88,8 @@ class SubsystemNode:
         self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
         topics = [topic for topic in published_by(name) if topic.rate != "irregular"]
+        # compiling took longer than discovery, so a run that was here before is known by now
+        refuse_rivals(self.node, [topic.name for topic in topics], ours=0, wait_s=0.0)
         self._templates = {topic.name: Template(topic) for topic in topics}
         self._publishers = {
             topic.name: self.node.create_publisher(

@@ -116,7 +116,7 @@ def test_a_second_run_in_the_same_domain_is_refused_and_harms_nobody(endless, tm
         first.wait_for_time(0.5)
         with cli_run(tmp_path / "second", endless, "--no-record", domain=first.domain) as second:
             assert second.finish() == 3
-            assert f"more than one publisher in ROS domain {first.domain}" in second.errors
+            assert f"publisher of another run in ROS domain {first.domain}" in second.errors
             assert "set another ROS_DOMAIN_ID" in second.errors
         first.process.send_signal(signal.SIGINT)
         assert first.finish() == 130
