@@ -16,6 +16,7 @@ from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
 from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, published_by
 from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
+from shipcrane_twin.ros.diagnostics import SelfReport
 from shipcrane_twin.ros.links import (
     LATCHED_QOS,
     LOOP_QOS,
@@ -98,6 +99,8 @@ class SubsystemNode:
             for topic in topics
         }
         self._expected = step_listeners(run.recorded)
+        if hasattr(self._participant.subsystem, "condition"):
+            SelfReport(self.node, self._participant, scenario.step_ns)
         self._desk = desk(self.node, self._participant, scenario.step_ns) if desk else None
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)

@@ -1,14 +1,13 @@
-"""Where the vessel node takes orders: DP's switch and set-point, faults; and where it says how it is.
+"""Where the vessel node takes orders: DP's switch and set-point, faults.
 
 Orders are taken between steps and published on ``/vessel/orders`` with the start of the step in which they take effect.
 A fault is an event of the scenario that happens now.
 """
 
-import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 from pydantic import TypeAdapter, ValidationError
 from rcl_interfaces.msg import SetParametersResult
@@ -19,11 +18,11 @@ from std_srvs.srv import SetBool
 from shipcrane_twin.config.scenario import SENSORS, EventConfig, wrong_keys
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems.vessel import Vessel
-from shipcrane_twin.cosim.time import seconds, stamp_parts
+from shipcrane_twin.cosim.time import seconds
 from shipcrane_twin.physics.frames import euler_from_matrix, heading_from_yaw, matrix_from_quat
+from shipcrane_twin.ros.diagnostics import pairs, stamped
 from shipcrane_twin.ros.parameters import declare
 
-DIAGNOSTICS_PERIOD_S = 1.0
 WORLD = "map"
 POWER = "power_share"
 FAULT = "fault."
@@ -48,7 +47,6 @@ class VesselDesk:
         self._node, self._participant, self._step_ns = node, participant, step_ns
         self._dp, self._thrusters = vessel.positioning, vessel.thruster_names
         self._orders = node.create_publisher(DiagnosticArray, "/vessel/orders", 10)
-        self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         node.create_subscription(PoseStamped, "/dp/setpoint", self._take_setpoint, 10)
         node.create_service(SetBool, "/dp/enable", self._serve_enable)
         kinds = "none, failed, frozen, runaway or limited with a share (limited 0.5)"
@@ -59,7 +57,6 @@ class VesselDesk:
         declare(node, POWER, 1.0, "Share of the thrusters' total power that is left, 0 to 1", live=True)
         node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(self._apply_parameters)
-        node.create_timer(DIAGNOSTICS_PERIOD_S, self._report)
 
     @property
     def _now_ns(self) -> int:
@@ -114,27 +111,8 @@ class VesselDesk:
 
     def _note(self, what: str, values: dict[str, object]) -> None:
         """Publish an order that was taken."""
-        told = DiagnosticStatus(name="vessel: order", message=what, values=_pairs(values))
-        self._orders.publish(self._stamped(told))
-
-    def _report(self) -> None:
-        """Publish how dynamic positioning is doing."""
-        warnings = self._dp.warnings()
-        off_m, off_rad = self._dp.deviation()
-        values = {
-            "dp": "on" if self._dp.on else "off",
-            "position_error_m": f"{off_m:.2f}",
-            "heading_error_deg": f"{math.degrees(off_rad):.2f}",
-        }
-        level = DiagnosticStatus.WARN if warnings else DiagnosticStatus.OK
-        message = "; ".join(warnings) or "in order"
-        told = DiagnosticStatus(level=level, name="vessel: dp", message=message, values=_pairs(values))
-        self._diagnostics.publish(self._stamped(told))
-
-    def _stamped(self, status: DiagnosticStatus) -> DiagnosticArray:
-        message = DiagnosticArray(status=[status])
-        message.header.stamp.sec, message.header.stamp.nanosec = stamp_parts(self._now_ns)
-        return message
+        told = DiagnosticStatus(name="vessel: order", message=what, values=pairs(values))
+        self._orders.publish(stamped(told, self._now_ns))
 
 
 def ours(parameters: Iterable[Parameter]) -> list[Parameter]:
@@ -151,6 +129,3 @@ def event_of(parameter: Parameter, thrusters: tuple[str, ...]) -> dict[str, obje
     values = {"event": "thruster_fault" if which in thrusters else "sensor_fault", "which": which, "fault": fault}
     return values | ({"share": float(share)} if share else {})
 
-
-def _pairs(values: Mapping[str, object]) -> list[KeyValue]:
-    return [KeyValue(key=key, value=str(value)) for key, value in values.items()]

@@ -67,6 +67,18 @@ class Vessel:
         """Return what an operator should know now."""
         return self.positioning.warnings()
 
+    def condition(self) -> dict[str, str]:
+        """Return how position keeping does, for diagnostics."""
+        dp = self.positioning
+        off_m, off_rad = dp.deviation()
+        power = self._thrusters()[2]
+        return {
+            "dp": "on" if dp.on else "off",
+            "position_error_m": f"{off_m:.2f}",
+            "heading_error_deg": f"{np.rad2deg(off_rad):.2f}",
+            "thruster_power_kw": f"{power.sum() / 1e3:.0f}",
+        }
+
     def _position(self, time_ns: int) -> None:
         """Run dynamic positioning on what the sensors see at the start of a step."""
         odom, accel = vessel_outputs(self._memory, self._params.cog)
