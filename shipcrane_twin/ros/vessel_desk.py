@@ -16,7 +16,9 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool
 
+from shipcrane_twin.config.dp import SetpointConfig
 from shipcrane_twin.config.scenario import SENSORS, EventConfig, wrong_keys
+from shipcrane_twin.config.settings import plain
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems.vessel import Vessel
 from shipcrane_twin.cosim.time import seconds, stamp_parts
@@ -76,9 +78,9 @@ class VesselDesk:
             self._refuse(f"x, y and quaternion are {found}, expected finite numbers and a quaternion of length 1")
         else:
             yaw = euler_from_matrix(matrix_from_quat(quat))[2]
-            self._dp.move_to(np.array([place.x, place.y, yaw]))
-            values = {"north_m": place.y, "east_m": place.x, "heading_deg": heading_from_yaw(yaw)}
-            self._note("setpoint", values)
+            point = SetpointConfig(north_m=place.y, east_m=place.x, heading_deg=heading_from_yaw(yaw))
+            self._dp.move_to(point)
+            self._note("setpoint", plain(point))
 
     def _refuse(self, why: str) -> None:
         self._node.get_logger().warn(f"/dp/setpoint refused: {why}", throttle_duration_sec=1.0)
