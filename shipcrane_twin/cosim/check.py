@@ -8,7 +8,8 @@ import numpy as np
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError, nearest
 from shipcrane_twin.cosim.build import crane_chain, crane_drives
-from shipcrane_twin.cosim.coupling import SCHEMES
+from shipcrane_twin.cosim.controllers import check_controllers, own_chain_of
+from shipcrane_twin.cosim.coupling import CHAIN, SCHEMES
 from shipcrane_twin.cosim.initial import Rest, at_rest
 from shipcrane_twin.cosim.subsystems import make_subsystem
 from shipcrane_twin.physics.arrays import Array
@@ -37,7 +38,8 @@ def check_buildable(scenario: Scenario) -> None:
         chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
         rest = at_rest(scenario)
-        make_subsystem("crane", scenario)
+        for part in ("crane", *own_chain_of(scenario)[len(CHAIN) :]):
+            make_subsystem(part, scenario)
     except ValueError as err:
         raise ConfigError(f"{name}: {err}") from None
     ends = np.sort([joints_from_lengths(drives, drives.length_min), joints_from_lengths(drives, drives.length_max)], 0)
@@ -48,6 +50,7 @@ def check_buildable(scenario: Scenario) -> None:
                 f"{name}: crane.initial_joints has {value:g} for {link.joint}, "
                 f"expected {low:.4f} to {high:.4f}, where its cylinder ends"
             )
+    check_controllers(scenario)
     check_strength(scenario, chain, rest)
     check_servo_step(scenario, chain, ends)
 
