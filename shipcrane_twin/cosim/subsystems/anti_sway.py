@@ -52,10 +52,10 @@ def anti_sway_params(scenario: Scenario) -> AntiSwayParams:
     joints = np.array(scenario.crane.initial_joints)
     lift = np.array([float(name == "boom") for name in scenario.joint_names])
     tip_b, velocity_b, omega_b, _ = tip_state(build.crane_chain(scenario.crane), joints, lift)
-    outward = np.array([tip_b[0], tip_b[1], 0.0]) / np.hypot(tip_b[0], tip_b[1])
-    along = np.array([-outward[1], outward[0], 0.0])
-    # a rate that lifts turns about -along: it moves the tip outward by -lift (height above the pivot)
-    sign = -float(np.sign(omega_b @ along))
+    # a rate of 1 that lifts turns about -along, and moves the tip outward by -(height above the pivot)
+    sign = -float(np.sign(tip_b[0] * omega_b[1] - tip_b[1] * omega_b[0]))
+    along = -sign * omega_b
+    outward = np.array([along[1], -along[0], 0.0])  # in the boom's plane, which misses the slew axis by a little
     winch = scenario.winch
     return make_anti_sway(
         damping_ratio=config.damping_ratio,
