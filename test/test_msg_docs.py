@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from graph_runs import NODES, cli_run, needs_ros, operator_in, write_lively
 
-from shipcrane_twin.cosim.controllers import CONTROLLER_INPUTS
+from shipcrane_twin.cosim.controllers import CONTROLLER_INPUTS, CONTROLLER_TOPICS
 from shipcrane_twin.cosim.coupling import INPUTS
-from shipcrane_twin.cosim.topics import BY_NAME, CONTROLLER_TOPICS, JOINT_FIELDS, JOINTS, TOPICS
+from shipcrane_twin.cosim.topics import BY_NAME, JOINT_FIELDS, JOINTS, TOPICS
 
 ALL_TOPICS = (*TOPICS, *CONTROLLER_TOPICS.values())
 NAMES = {topic.name for topic in ALL_TOPICS}

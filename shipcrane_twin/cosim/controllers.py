@@ -13,13 +13,36 @@ from shipcrane_twin.config.controllers import ControllerConfig, ExternalConfig, 
 from shipcrane_twin.config.scenario import WINCH, Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS
-from shipcrane_twin.cosim.topics import BY_NAME, CONTROLLER_TOPICS, JOINTS, TOPICS, Topic
+from shipcrane_twin.cosim.topics import BY_NAME, JOINTS, TOPICS, Topic
 from shipcrane_twin.physics.arrays import Array
+
+CONTROLLER_TOPICS = {
+    "heave_compensation": Topic(
+        name="/heave_compensation/joint_command",
+        type=JOINTS,
+        publisher="heave_compensation",
+        frame="crane_tip",
+        joints=("winch",),
+        fields=("velocity",),
+        about="Pay-out speed to add to the operator's in the step that follows [m/s].",
+    ),
+    "anti_sway": Topic(
+        name="/anti_sway/joint_command",
+        type=JOINTS,
+        publisher="anti_sway",
+        frame="crane_base",
+        joints=("slew", "boom"),
+        fields=("velocity",),
+        about="Joint velocities in place of the operator's in the step that follows [rad/s].",
+    ),
+}
+"""Of the controllers that a scenario may list: there in a run only when it does."""
 
 CONTROLLER_INPUTS = {
     "heave_compensation": ("/vessel/odom", "/vessel/accel", "/crane/tip"),
     "anti_sway": ("/vessel/odom", "/crane/tip", "/payload/odom"),
 }
+"""The topics that they wait for in every step."""
 
 
 def chain_of(scenario: Scenario) -> tuple[str, ...]:

@@ -1,7 +1,8 @@
 """The whole twin in one process, without ROS: the same subsystems, the same scheme, the same bits."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
+from shipcrane_twin.config.controllers import ExternalConfig
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.controllers import chain_of, controller_topic, inputs_of, own_chain_of
@@ -37,7 +38,12 @@ class InlineRun:
     ) -> None:
         self._participants = [Participant(name, scenario) for name in own_chain_of(scenario)]
         self._inputs = inputs_of(scenario)
-        self._externals = self._choose(scenario, externals or {})
+        check_stand_ins(scenario, externals or {})
+        self._externals = [
+            (one.name, controller_topic(one).name, externals[one.name])
+            for one in scenario.controllers
+            if externals and isinstance(one, ExternalConfig)
+        ]
         self._step_ns = scenario.step_ns
         self._last = scenario.step_count
         self._sink = sink
@@ -66,18 +72,6 @@ class InlineRun:
             for name, values in out.items():
                 self._sink(k * self._step_ns, name, values)
 
-    @staticmethod
-    def _choose(scenario: Scenario, externals: Mapping[str, External]) -> list[tuple[str, str, External]]:
-        own = own_chain_of(scenario)
-        missing = [name for name in chain_of(scenario) if name not in (*own, *externals)]
-        if missing:
-            raise ConfigError(
-                f"{scenario.name}: the controller {missing[0]} is a node of its own; run the scenario as a graph "
-                "beside it (--mode graph), or take it out of controllers"
-            )
-        listed = [one for one in scenario.controllers if one.name not in own]
-        return [(one.name, controller_topic(one).name, externals[one.name]) for one in listed]
-
     @property
     def latest(self) -> dict[str, Array]:
         """The latest value of every topic."""
@@ -87,3 +81,13 @@ class InlineRun:
     def digest(self) -> str:
         """The run's state digest so far."""
         return state_digest({p.name: p.digest for p in self._participants})
+
+
+def check_stand_ins(scenario: Scenario, present: Collection[str] = ()) -> None:
+    """Raise ConfigError if the scenario lists an external controller for which nothing stands in an inline run."""
+    missing = [name for name in chain_of(scenario) if name not in (*own_chain_of(scenario), *present)]
+    if missing:
+        raise ConfigError(
+            f"{scenario.name}: the controller {missing[0]} is a node of its own; run the scenario as a graph beside it "
+            "(--mode graph), or take it out of controllers"
+        )

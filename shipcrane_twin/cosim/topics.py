@@ -276,28 +276,6 @@ TOPICS: tuple[Topic, ...] = (
 
 BY_NAME = {topic.name: topic for topic in TOPICS}
 
-CONTROLLER_TOPICS = {
-    "heave_compensation": Topic(
-        name="/heave_compensation/joint_command",
-        type=JOINTS,
-        publisher="heave_compensation",
-        frame="crane_tip",
-        joints=("winch",),
-        fields=("velocity",),
-        about="Pay-out speed to add to the operator's in the step that follows [m/s].",
-    ),
-    "anti_sway": Topic(
-        name="/anti_sway/joint_command",
-        type=JOINTS,
-        publisher="anti_sway",
-        frame="crane_base",
-        joints=("slew", "boom"),
-        fields=("velocity",),
-        about="Joint velocities in place of the operator's in the step that follows [rad/s].",
-    ),
-}
-"""Of the controllers that a scenario may list: there in a run only when it does."""
-
 
 def published_by(name: str, topics: tuple[Topic, ...] = TOPICS) -> tuple[Topic, ...]:
     """Return the topics of one publisher, in table order."""

@@ -95,7 +95,7 @@ class SubsystemNode:
         obeys = hasattr(self._participant.subsystem, "commands")
         self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
-        topics = published_by(name)
+        topics = published_by(name, topics_of(scenario))
         self._templates = {topic.name: Template(topic) for topic in topics}
         self._publishers = {
             topic.name: self.node.create_publisher(
@@ -142,6 +142,11 @@ class SubsystemNode:
         told = time.monotonic()
         while not self._stop:
             missing = listeners_matched(self.node, self._publishers, self._expected)
+            missing += [
+                f"{inbox.topic.publisher} ({inbox.topic.name})"
+                for inbox, _, _ in self._inputs
+                if inbox.topic.name in self._foreign and not inbox.subscription.get_publisher_count()
+            ]  # a node of the user's own does not wait for those that hear it
             if not missing:
                 refuse_rivals(self.node, self._publishers)
                 return

@@ -9,6 +9,7 @@ import pytest
 from pydantic import TypeAdapter
 from scipy.signal import welch
 
+from shipcrane_twin import cli
 from shipcrane_twin.config.controllers import ExternalConfig
 from shipcrane_twin.config.load import load_scenario, scenario_yaml
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -189,6 +190,12 @@ def test_an_external_controller_has_a_stand_in_inline_that_acts_one_step_later()
 def test_an_external_controller_without_a_stand_in_is_refused_inline():
     with pytest.raises(ConfigError, match="mine is a node of its own; run the scenario as a graph"):
         InlineRun(with_controllers(MINE))
+
+
+def test_the_command_line_refuses_it_before_it_makes_a_folder(tmp_path):
+    with pytest.raises(ConfigError, match="a node of its own"):
+        cli.execute(with_controllers(MINE), "inline", tmp_path / "run", True)
+    assert not (tmp_path / "run").exists()
 
 
 @pytest.mark.parametrize(
