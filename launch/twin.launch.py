@@ -6,6 +6,9 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch_ros.actions import Node
 
+from shipcrane_twin.config.load import load_scenario
+from shipcrane_twin.cosim.controllers import own_chain_of
+
 ARGUMENTS = {
     "scenario": ("case2", "scenario: a name in config/scenarios or the path of a file"),
     "speed": ("0", "simulated seconds per second of wall clock; 0 is as fast as it goes"),
@@ -18,7 +21,7 @@ def start_nodes(context):
     values = context.launch_configurations
     run_dir = "" if values["record"] == "none" else values["record"]
     shared = {"scenario": values["scenario"], "run_dir": run_dir, "recorded": bool(run_dir)}
-    own = {name: {} for name in ("environment", "vessel", "crane", "payload")}
+    own = {name: {} for name in own_chain_of(load_scenario(values["scenario"]))}
     own["clock"] = {"speed": float(values["speed"])}
     if run_dir:
         own["recorder"] = {}

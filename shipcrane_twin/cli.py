@@ -134,9 +134,12 @@ def warn(scenario: Scenario) -> None:
 def execute(scenario: Scenario, mode: Literal["graph", "inline"], out: Path | None, record: bool) -> None:
     """Run a checked scenario with a progress line, print its summary and leave with its exit code."""
     from shipcrane_twin.cosim.check import check_buildable
+    from shipcrane_twin.cosim.inline import check_stand_ins
     from shipcrane_twin.running.session import run_scenario
 
     check_buildable(scenario)
+    if mode == "inline":
+        check_stand_ins(scenario)
     warn(scenario)
     folder = make_run_folder(scenario, out)
     columns = (

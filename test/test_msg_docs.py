@@ -5,9 +5,12 @@ from pathlib import Path
 import pytest
 from graph_runs import NODES, cli_run, needs_ros, operator_in, write_lively
 
+from shipcrane_twin.cosim.controllers import CONTROLLER_INPUTS, CONTROLLER_TOPICS
 from shipcrane_twin.cosim.coupling import INPUTS
 from shipcrane_twin.cosim.topics import BY_NAME, JOINT_FIELDS, JOINTS, TOPICS
 
+ALL_TOPICS = (*TOPICS, *CONTROLLER_TOPICS.values())
+NAMES = {topic.name for topic in ALL_TOPICS}
 DOCS = Path(__file__).resolve().parents[1] / "msg_docs"
 PAGES = {path.name: path.read_text(encoding="utf-8") for path in sorted(DOCS.glob("*.md"))}
 RATES = {"step": "every macro step", "telemetry": "every telemetry period", "once": "once", "irregular": "irregular"}
@@ -46,10 +49,10 @@ def listeners(topic):
 
 
 def test_every_topic_is_described_and_no_other():
-    assert SECTIONS.keys() == BY_NAME.keys()
+    assert SECTIONS.keys() == NAMES
 
 
-@pytest.mark.parametrize("topic", TOPICS, ids=lambda topic: topic.name)
+@pytest.mark.parametrize("topic", ALL_TOPICS, ids=lambda topic: topic.name)
 def test_facts_are_those_of_the_topic_table(topic):
     told = facts(topic.name)
     assert told["type"] == topic.type
@@ -60,7 +63,15 @@ def test_facts_are_those_of_the_topic_table(topic):
     assert {name for name, topics in INPUTS.items() if topic.name in topics} <= listeners(topic.name)
 
 
-@pytest.mark.parametrize("topic", [topic for topic in TOPICS if topic.type == JOINTS], ids=lambda topic: topic.name)
+def test_controllers_hear_and_command_what_is_told():
+    told = {row[0].strip("`"): row[1:3] for row in rows(PAGES["controllers.md"]) if len(row) == 4}
+    for kind, topic in CONTROLLER_TOPICS.items():
+        heard, commands = told[kind]
+        assert tuple(re.findall(r"`(/[\w/]+)`", heard)) == CONTROLLER_INPUTS[kind]
+        assert tuple(commands.split(", ")) == topic.joints
+
+
+@pytest.mark.parametrize("topic", [t for t in ALL_TOPICS if t.type == JOINTS], ids=lambda topic: topic.name)
 def test_every_joint_and_filled_array_is_described(topic):
     table = {}
     for row in rows(SECTIONS[topic.name]):
@@ -73,10 +84,10 @@ def test_every_joint_and_filled_array_is_described(topic):
 
 
 def test_no_page_names_a_topic_or_service_that_does_not_exist():
-    roots = {name.split("/")[1] for name in BY_NAME}
+    roots = {name.split("/")[1] for name in NAMES}
     for page, text in PAGES.items():
         named = {name for name in re.findall(r"(?<![\w.)/])/[a-z_]+(?:/[a-z_]+)*", text) if name.split("/")[1] in roots}
-        assert named <= BY_NAME.keys() | SERVICES, page
+        assert named <= NAMES | SERVICES, page
 
 
 def test_every_page_is_in_the_index_and_every_link_leads_somewhere():

@@ -12,7 +12,7 @@ import pytest
 import shipcrane_twin
 
 ROOT = Path(__file__).resolve().parents[1]
-NODES = ["clock", "crane", "environment", "payload", "recorder", "vessel"]
+NODES = ["anti_sway", "clock", "crane", "environment", "heave_compensation", "payload", "recorder", "vessel"]
 # What ./twin calls besides Python, and the tool that the simulated Pythons below are written in.
 TOOLS = ["sh", "cat", "cksum", "date", "dirname", "find", "ls", "mkdir", "readlink", "rm", "tail"]
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
+from shipcrane_twin.config.controllers import ControllerConfig, controller_problems
 from shipcrane_twin.config.crane import (
     CraneConfig,
     NotNegative,
@@ -105,6 +106,7 @@ class Scenario:
     payload: PayloadConfig
     operations: tuple[OperationConfig, ...] = ()
     events: tuple[EventConfig, ...] = ()
+    controllers: tuple[ControllerConfig, ...] = ()
     recording: RecordingConfig
 
     @property
@@ -143,6 +145,7 @@ def problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         *sensor_problems(scenario),
         *event_problems(scenario),
         *winch_problems(scenario),
+        *controller_problems(scenario.controllers, (*scenario.joint_names, WINCH)),
         *weather_problems(scenario),
     ]
 

@@ -69,7 +69,7 @@ def read_settings(cls: type[T], data: dict[str, Any], where: typing.Callable[[Se
 
 def describe(cls: type, detail: ErrorDetails, where: typing.Callable[[Sequence[Any]], str]) -> str:
     """Word one validation error: place, value, expectation, remedy."""
-    path = [part for part in detail["loc"] if part != "constrained-str"]
+    path = without_tags(cls, detail["loc"])
     key = dotted(path)
     place = where(path)
     kind, value = detail["type"], detail["input"]
@@ -79,11 +79,36 @@ def describe(cls: type, detail: ErrorDetails, where: typing.Callable[[Sequence[A
         return f"{place}: {key} is missing; add it"
     message = detail["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     hint = ""
+    if kind == "union_tag_not_found":
+        return f"{place}: {key}.kind is missing; add it"
+    if kind == "union_tag_invalid":
+        key, value, message = f"{key}.kind", detail["ctx"]["tag"], f"one of {detail['ctx']['expected_tags']}"
     if kind == "dataclass_type":
         message = "a group with the keys " + ", ".join(known_keys(cls, path))
     if isinstance(value, str) and re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+", value.strip()):
         hint = "; YAML reads this as text, write it with a point and a signed exponent, like 5.0e+5"
     return f"{place}: {key} is {shown(value)}, expected {message}{hint}"
+
+
+def without_tags(cls: Any, loc: Sequence[Any]) -> list[Any]:
+    """Return pydantic's place of an error as a key path: without the kinds of the groups that it went through."""
+    path: list[Any] = []
+    for part in loc:
+        options = dataclasses_in(cls)
+        owner = next((option for option in options if part in option.__dataclass_fields__), None)
+        if owner is not None:
+            cls = typing.get_type_hints(owner)[part]
+        elif tagged := [option for option in options if len(options) > 1 and part in kinds_of(option)]:
+            cls = tagged[0]
+            continue
+        if part != "constrained-str":
+            path.append(part)
+    return path
+
+
+def kinds_of(cls: Any) -> tuple[Any, ...]:
+    """Return the values of the key ``kind`` that stand for a settings class."""
+    return typing.get_args(typing.get_type_hints(cls).get("kind"))
 
 
 def shown(value: Any) -> str:
@@ -116,8 +141,8 @@ def known_keys(cls: Any, path: Sequence[Any]) -> list[str]:
     """Return the keys that a settings class has at a path inside it."""
     for part in path:
         for option in dataclasses_in(cls):
-            if isinstance(part, int) or part in option.__dataclass_fields__:
-                cls = option if isinstance(part, int) else typing.get_type_hints(option)[part]
+            if part in option.__dataclass_fields__:
+                cls = typing.get_type_hints(option)[part]
                 break
     options = dataclasses_in(cls)
     return [name for option in options for name in option.__dataclass_fields__]

@@ -8,7 +8,8 @@ import numpy as np
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError, nearest
 from shipcrane_twin.cosim.build import crane_chain, crane_drives
-from shipcrane_twin.cosim.coupling import SCHEMES
+from shipcrane_twin.cosim.controllers import check_controllers, own_chain_of
+from shipcrane_twin.cosim.coupling import CHAIN, SCHEMES
 from shipcrane_twin.cosim.initial import Rest, at_rest
 from shipcrane_twin.cosim.subsystems import make_subsystem
 from shipcrane_twin.cosim.topics import THRUSTERS
@@ -44,7 +45,7 @@ def check_buildable(scenario: Scenario) -> None:
         chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
         rest = at_rest(scenario)
-        for part in ("vessel", "crane"):
+        for part in ("vessel", "crane", *own_chain_of(scenario)[len(CHAIN) :]):
             make_subsystem(part, scenario)
     except ValueError as err:
         raise ConfigError(f"{name}: {err}") from None
@@ -56,6 +57,7 @@ def check_buildable(scenario: Scenario) -> None:
                 f"{name}: crane.initial_joints has {value:g} for {link.joint}, "
                 f"expected {low:.4f} to {high:.4f}, where its cylinder ends"
             )
+    check_controllers(scenario)
     check_strength(scenario, chain, rest)
     check_servo_step(scenario, chain, ends)
 

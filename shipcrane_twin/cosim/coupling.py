@@ -3,6 +3,7 @@
 A macro step is a chain environment, vessel, crane, payload. In it a subsystem may use the value of a
 subsystem before it at the end of the step (motion, interpolated over the step), and of one behind it
 the value of the step before (feedback: forces as means over the interval, never extrapolated).
+Controllers that a scenario lists come behind all of them, see `cosim.controllers`.
 """
 
 from dataclasses import dataclass
@@ -56,7 +57,12 @@ class Scheme:
 
     def lag(self, consumer: str, publisher: str) -> int:
         """Return how many steps old the publisher's value is that the consumer uses: 0 or 1."""
-        return 0 if CHAIN.index(publisher) < CHAIN.index(consumer) else 1
+        return 0 if place_of(publisher) < place_of(consumer) else 1
+
+
+def place_of(name: str) -> int:
+    """Return where a participant stands in a step; controllers share the place behind the chain."""
+    return CHAIN.index(name) if name in CHAIN else len(CHAIN)
 
 
 SCHEMES = {

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS, Scheme
-from shipcrane_twin.cosim.topics import BY_NAME
+from shipcrane_twin.cosim.topics import BY_NAME, Topic
 
 RECORDER_LEAD_STEPS = 200
 """How many steps the clock may be ahead of what the recorder has confirmed."""
@@ -23,20 +23,38 @@ class Lockstep:
         How many steps the clock may lead the slowest participant: 1 is a strict barrier.
     recorded : bool
         A recorder confirms steps and must not fall behind.
+    chain : tuple of str
+        The participants, in order.
+    inputs : mapping
+        Topics that each participant waits for.
+    topics : mapping
+        The run's topics by name.
     """
 
     scheme: Scheme
     last: int
     run_ahead: int
     recorded: bool
+    chain: tuple[str, ...] = CHAIN
+    inputs: Mapping[str, tuple[str, ...]] = field(default_factory=lambda: INPUTS)
+    topics: Mapping[str, Topic] = field(default_factory=lambda: BY_NAME)
     announced: int = -1
-    done: dict[str, int] = field(default_factory=lambda: dict.fromkeys(CHAIN, -1))
+    done: dict[str, int] = field(default_factory=dict)
     recorded_to: int = -1
+
+    def __post_init__(self) -> None:
+        """Begin with nobody having done anything."""
+        self.done = dict.fromkeys(self.chain, -1) | self.done
 
     @property
     def slowest(self) -> int:
         """The step that every participant has finished."""
         return min(self.done.values())
+
+    @property
+    def last_behind(self) -> str:
+        """The participant that the clock hears of last: the last in the chain of those that have done least."""
+        return next(name for name in reversed(self.chain) if self.done[name] == self.slowest)
 
     def may_announce(self) -> int:
         """Return the highest step that may be announced now (the present one if no further)."""
@@ -58,7 +76,7 @@ class Lockstep:
     def silent(self) -> list[str]:
         """Return who holds the run up: those that have all they need for their next step."""
         names = [
-            name for name in CHAIN if self.done[name] < self.announced and self.can_step(name, self.done[name] + 1)
+            name for name in self.chain if self.done[name] < self.announced and self.can_step(name, self.done[name] + 1)
         ]
         if not names and self.recorded and self.recorded_to < self.slowest:
             return ["recorder"]
@@ -66,7 +84,7 @@ class Lockstep:
 
     def can_step(self, name: str, step: int) -> bool:
         """Whether every input that a participant needs for a step has been published."""
-        publishers = {BY_NAME[topic].publisher for topic in INPUTS[name]} if step else set()
+        publishers = {self.topics[topic].publisher for topic in self.inputs[name]} if step else set()
         return all(self.done[other] >= step - self.scheme.lag(name, other) for other in publishers)
 
 

@@ -337,6 +337,6 @@ TOPICS: tuple[Topic, ...] = (
 BY_NAME = {topic.name: topic for topic in TOPICS}
 
 
-def published_by(name: str) -> tuple[Topic, ...]:
+def published_by(name: str, topics: tuple[Topic, ...] = TOPICS) -> tuple[Topic, ...]:
     """Return the topics of one publisher, in table order."""
-    return tuple(topic for topic in TOPICS if topic.publisher == name)
+    return tuple(topic for topic in topics if topic.publisher == name)

@@ -11,6 +11,7 @@ from rosbags.typesys import Stores, get_typestore
 from shipcrane_twin import __version__
 from shipcrane_twin.config.load import scenario_yaml
 from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.cosim.controllers import topics_of
 from shipcrane_twin.cosim.topics import TOPICS, Topic
 
 LIBRARY = "shipcrane_twin"
@@ -33,14 +34,22 @@ def offered_qos(topic: Topic) -> str:
     return QOS.format(durability="transient_local" if topic.rate == "once" else "volatile")
 
 
-RECORDED = tuple(topic for topic in TOPICS if topic.name != "/recorder/progress")
-"""What a bag of the twin holds; the recorder's own progress is not part of a run."""
+NOT_RECORDED = "/recorder/progress"
+"""Is not part of a run."""
+
+RECORDED = tuple(topic for topic in TOPICS if topic.name != NOT_RECORDED)
+"""What every bag of the twin holds."""
+
+
+def recorded_topics(scenario: Scenario) -> tuple[Topic, ...]:
+    """Return what a bag of a run of this scenario holds: its controllers' topics as well."""
+    return tuple(topic for topic in topics_of(scenario) if topic.name != NOT_RECORDED)
 
 
 def bag_options(scenario: Scenario) -> dict[str, Any]:
     """Return the arguments of `BagWriter`, beside the folder, for the bag of a run of this scenario."""
     return {
-        "topics": RECORDED,
+        "topics": recorded_topics(scenario),
         "compression": scenario.recording.compression,
         "chunk_kib": scenario.recording.chunk_kib,
         "metadata": {"scenario": scenario_yaml(scenario), "version": __version__, "seed": str(scenario.seed)},

@@ -241,6 +241,24 @@ def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
     return names, velocities
 
 
+def joint_velocities(message: bytes, joints: Sequence[str]) -> Array:
+    """Return the velocities of these joints, in this order, from a serialized JointState that names just them.
+
+    Raises
+    ------
+    CdrError
+        If the bytes are no JointState, or names and velocities are not one finite number for each joint.
+    """
+    names, velocities = read_joint_velocities(message)
+    if sorted(names) != sorted(joints) or len(velocities) != len(names) or not np.isfinite(velocities).all():
+        raise CdrError(
+            f"names {names}, velocities {list(velocities)}; expected one finite velocity for each of "
+            f"{', '.join(joints)}"
+        )
+    said = dict(zip(names, velocities, strict=True))
+    return np.array([said[joint] for joint in joints])
+
+
 def _read_count(message: bytes, at: int) -> tuple[int, int]:
     at += -(at - ORIGIN) % 4
     return struct.unpack_from("<I", message, at)[0], at + 4

@@ -12,7 +12,8 @@ from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool, Trigger
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.cosim.coupling import CHAIN, SCHEMES
+from shipcrane_twin.cosim.controllers import chain_of, inputs_of, topics_of
+from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.pacing import Lockstep, Pace, progress_of
 from shipcrane_twin.cosim.time import stamp_parts
 from shipcrane_twin.cosim.topics import BY_NAME
@@ -29,7 +30,7 @@ from shipcrane_twin.ros.links import (
 from shipcrane_twin.ros.parameters import declare, declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, write_json, write_result
 from shipcrane_twin.ros.stop import StopFlag
-from shipcrane_twin.ros.subsystem_node import DONE_TOPIC, SERVICE_PERIOD_S, step_listeners
+from shipcrane_twin.ros.subsystem_node import SERVICE_PERIOD_S, done_topics, step_listeners
 
 STATUS_PERIOD_S = 0.25
 DIAGNOSTICS_PERIOD_S = 1.0
@@ -60,19 +61,25 @@ class ClockNode:
         self._silence_s = scenario.lockstep.silence_timeout_s
         self._step_ns = scenario.step_ns
         self._lockstep = Lockstep(
-            SCHEMES[scenario.coupling], scenario.step_count, scenario.lockstep.run_ahead_steps, run.recorded
+            SCHEMES[scenario.coupling],
+            scenario.step_count,
+            scenario.lockstep.run_ahead_steps,
+            run.recorded,
+            chain_of(scenario),
+            inputs_of(scenario),
+            {topic.name: topic for topic in topics_of(scenario)},
         )
         self._pace = Pace(scenario.step_ns / 1e9, speed)
 
         group = LoopOwned()
-        self._inboxes = {name: Inbox(self.node, BY_NAME[DONE_TOPIC[name]], group) for name in CHAIN}
+        self._inboxes = {name: Inbox(self.node, topic, group) for name, topic in done_topics(scenario).items()}
         self._recorder = Inbox(self.node, BY_NAME["/recorder/progress"], group)
         self._mail = Mailroom(self.node, [*self._inboxes.values(), self._recorder])
         clock = BY_NAME["/clock"]
         self._template = Template(clock)
         self._publisher = self.node.create_publisher(message_class(clock.type), clock.name, LOOP_QOS)
         self._diagnostics = self.node.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._expected = step_listeners(run.recorded)
+        self._expected = step_listeners(scenario, run.recorded)
         self.node.create_service(SetBool, "/clock/pause", self._serve_pause)
         self.node.create_service(Trigger, "/clock/step", self._serve_step)
         self.node.add_on_set_parameters_callback(self._serve_speed)
@@ -103,9 +110,9 @@ class ClockNode:
         self._announce(0)
         while not self._stop and not lockstep.finished:
             before, recorded_before = lockstep.slowest, lockstep.recorded_to
-            # the last of the chain has finished a step only when all have
+            # the load has finished a step only when all before it have; controllers only the load
             self._mail.wait(
-                self._pace.wait_s(lockstep.announced, now, SERVICE_PERIOD_S), only=self._inboxes[CHAIN[-1]]
+                self._pace.wait_s(lockstep.announced, now, SERVICE_PERIOD_S), only=self._inboxes[lockstep.last_behind]
             )
             self._hear()
             now = time.monotonic()
@@ -161,7 +168,8 @@ class ClockNode:
             if self._lockstep.recorded and not self._recorder.subscription.get_publisher_count():
                 missing.append("recorder (/recorder/progress)")
             if not missing:
-                refuse_rivals(self.node, ["/clock", *DONE_TOPIC.values(), "/recorder/progress"])
+                done = [inbox.topic.name for inbox in self._inboxes.values()]
+                refuse_rivals(self.node, ["/clock", *done, "/recorder/progress"])
                 self._silent = []
                 return
             self._silent = sorted({text.split()[0] for text in missing})

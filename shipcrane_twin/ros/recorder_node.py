@@ -10,7 +10,7 @@ from rclpy.node import Node
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.topics import BY_NAME
-from shipcrane_twin.record.bag import RECORDED, BagWriter, bag_options
+from shipcrane_twin.record.bag import BagWriter, bag_options, recorded_topics
 from shipcrane_twin.record.collector import StepCollector
 from shipcrane_twin.ros.cdr import CdrError, Template, check_layout, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
@@ -46,9 +46,10 @@ class RecorderNode:
             self._bag = BagWriter(Path(run.run_dir or ".") / "bag", **bag_options(scenario))
         except OSError as err:
             raise ConfigError(f"recorder: the bag cannot be written: {err}; give another folder") from None
-        self._collector = StepCollector(RECORDED, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+        topics = recorded_topics(scenario)
+        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
         group = LoopOwned()
-        self._mail = Mailroom(self.node, [Inbox(self.node, topic, group) for topic in RECORDED])
+        self._mail = Mailroom(self.node, [Inbox(self.node, topic, group) for topic in topics])
         self._template = Template(BY_NAME[PROGRESS])
         self._publisher = self.node.create_publisher(message_class(BY_NAME[PROGRESS].type), PROGRESS, LOOP_QOS)
         self._executor = SingleThreadedExecutor()

@@ -9,13 +9,16 @@ import numpy as np
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
+from shipcrane_twin.config.controllers import ExternalConfig
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.config.scenario import Scenario
-from shipcrane_twin.cosim.coupling import CHAIN, INPUTS, SCHEMES
+from shipcrane_twin.config.settings import ConfigError
+from shipcrane_twin.cosim.controllers import chain_of, inputs_of, own_chain_of, topics_of
+from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
-from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, published_by
-from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities
+from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, JOINTS, Topic, published_by
+from shipcrane_twin.ros.cdr import CdrError, Template, joint_velocities, read_joint_velocities
 from shipcrane_twin.ros.diagnostics import SelfReport
 from shipcrane_twin.ros.links import (
     LATCHED_QOS,
@@ -32,9 +35,6 @@ from shipcrane_twin.ros.process import leave_graph, run_node, write_result
 from shipcrane_twin.ros.stop import StopFlag
 
 COMMAND_TOPIC = "/crane/joint_command"
-DONE_TOPIC = {name: [t.name for t in published_by(name) if t.rate == "step"][-1] for name in CHAIN}
-"""What each participant publishes last in a step: the clock listens to it."""
-
 SERVICE_PERIOD_S = 0.1
 """Wall time between two looks at parameters and services."""
 
@@ -43,15 +43,24 @@ Desk = Callable[[Node, Participant, int], object]
 KINDS = ("wait", "decode", "physics", "encode", "publish")
 
 
-def step_listeners(recorded: bool) -> dict[str, set[str]]:
+def done_topics(scenario: Scenario) -> dict[str, Topic]:
+    """Return what each participant publishes last in a step: the clock listens to it."""
+    topics = topics_of(scenario)
+    return {
+        name: [topic for topic in published_by(name, topics) if topic.rate == "step"][-1]
+        for name in chain_of(scenario)
+    }
+
+
+def step_listeners(scenario: Scenario, recorded: bool) -> dict[str, set[str]]:
     """Return the nodes that must hear each topic before the first message leaves."""
-    expected: dict[str, set[str]] = {name: {"recorder"} if recorded else set() for name in BY_NAME}
-    for consumer, topics in INPUTS.items():
-        for topic in topics:
-            expected[topic].add(consumer)
-    for name in CHAIN:
-        expected["/clock"].add(name)
-        expected[DONE_TOPIC[name]].add("clock")
+    expected: dict[str, set[str]] = {topic.name: {"recorder"} if recorded else set() for topic in topics_of(scenario)}
+    for consumer, topics in inputs_of(scenario).items():
+        for name in topics:
+            expected[name].add(consumer)
+    for topic in done_topics(scenario).values():
+        expected[topic.name].add("clock")
+    expected["/clock"].update(own_chain_of(scenario))
     return expected
 
 
@@ -75,20 +84,24 @@ class SubsystemNode:
         self._run_dir = run.run_dir
         scenario = load_scenario(run.scenario)
         self._step_ns, self._last = scenario.step_ns, scenario.step_count
+        if name not in own_chain_of(scenario):
+            raise ConfigError(f"{name}: the scenario {scenario.name} does not list it; add it to controllers")
         warm_up(name, scenario)
         self._participant = Participant(name, scenario)
 
         group = LoopOwned()
         self._clock = Inbox(self.node, BY_NAME["/clock"], group)
         scheme = SCHEMES[scenario.coupling]
+        table = {topic.name: topic for topic in topics_of(scenario)}
         self._inputs = [
             (Inbox(self.node, topic, group), scheme.lag(name, topic.publisher) * scenario.step_ns, Template(topic))
-            for topic in map(BY_NAME.__getitem__, INPUTS[name])
+            for topic in map(table.__getitem__, inputs_of(scenario)[name])
         ]
+        self._foreign = {one.topic for one in scenario.controllers if isinstance(one, ExternalConfig)}
         obeys = hasattr(self._participant.subsystem, "commands")
         self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
-        topics = [topic for topic in published_by(name) if topic.rate != "irregular"]
+        topics = [topic for topic in published_by(name, topics_of(scenario)) if topic.rate != "irregular"]
         # compiling took longer than discovery, so a run that was here before is known by now
         refuse_rivals(self.node, [topic.name for topic in topics], ours=0, wait_s=0.0)
         self._templates = {topic.name: Template(topic) for topic in topics}
@@ -98,7 +111,7 @@ class SubsystemNode:
             )
             for topic in topics
         }
-        self._expected = step_listeners(run.recorded)
+        self._expected = step_listeners(scenario, run.recorded)
         if hasattr(self._participant.subsystem, "condition"):
             SelfReport(self.node, self._participant, scenario.step_ns)
         self._desk = desk(self.node, self._participant, scenario.step_ns) if desk else None
@@ -140,6 +153,11 @@ class SubsystemNode:
         told = time.monotonic()
         while not self._stop:
             missing = listeners_matched(self.node, self._publishers, self._expected)
+            missing += [
+                f"{inbox.topic.publisher} ({inbox.topic.name})"
+                for inbox, _, _ in self._inputs
+                if inbox.topic.name in self._foreign and not inbox.subscription.get_publisher_count()
+            ]  # a node of the user's own does not wait for those that hear it
             if not missing:
                 refuse_rivals(self.node, self._publishers)
                 return
@@ -200,13 +218,25 @@ class SubsystemNode:
         time_ns = step * self._step_ns
         inputs = {}
         for inbox, lag, template in self._inputs:
-            values = template.decode(inbox.pop(time_ns - lag))
+            message = inbox.pop(time_ns - lag)
+            if inbox.topic.name in self._foreign:
+                inputs[inbox.topic.name] = self._foreign_words(inbox.topic, message)
+                continue
+            values = template.decode(message)
             if not math.isfinite(values.sum()):
                 raise ValueError(
                     f"{inbox.topic.name} at {time_ns / 1e9:.3f} s holds {values.tolist()}, expected finite numbers"
                 )
             inputs[inbox.topic.name] = values
         return inputs
+
+    def _foreign_words(self, topic: Topic, message: bytes) -> np.ndarray:
+        """Return what a user's own controller says; a wrong message counts as zero velocities, with a warning."""
+        try:
+            return joint_velocities(message, topic.joints)
+        except CdrError as err:
+            self.node.get_logger().warn(f"{topic.name} counts as zero: {err}", throttle_duration_sec=1.0)
+            return np.zeros(len(topic.joints))
 
     def _publish(self, step: int, out: Signals) -> None:
         time_ns = step * self._step_ns
@@ -236,11 +266,11 @@ class SubsystemNode:
 def warm_up(name: str, scenario: Scenario) -> None:
     """Compile (or load from the cache) every kernel that the subsystem uses, so that no step waits for it."""
     early = dataclasses.replace(scenario, dp=dataclasses.replace(scenario.dp, enabled_at_s=0.0))
-    signals: dict[str, np.ndarray] = {}
-    for other in CHAIN:
+    signals = {topic.name: np.zeros(topic.width) for topic in topics_of(scenario) if topic.type == JOINTS}
+    for other in own_chain_of(scenario):
         signals.update(make_subsystem(other, early).start())
     scratch = make_subsystem(name, early)
-    scratch.step(1, {topic: signals[topic] for topic in INPUTS[name]})
+    scratch.step(1, {topic: signals[topic] for topic in inputs_of(scenario)[name]})
 
 
 def run_subsystem(name: str, stop: StopFlag, desk: Desk | None = None) -> None:

@@ -11,7 +11,7 @@ from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim.inline import InlineRun
 from shipcrane_twin.cosim.topics import DIAGNOSTICS
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.record.bag import RECORDED, BagWriter, bag_options
+from shipcrane_twin.record.bag import BagWriter, bag_options, recorded_topics
 from shipcrane_twin.record.collector import StepCollector
 from shipcrane_twin.ros.cdr import Template
 
@@ -30,9 +30,10 @@ class InlineRecorder:
     """
 
     def __init__(self, scenario: Scenario, folder: Path) -> None:
-        self._templates = {topic.name: Template(topic) for topic in RECORDED if topic.type != DIAGNOSTICS}
+        topics = recorded_topics(scenario)
+        self._templates = {topic.name: Template(topic) for topic in topics if topic.type != DIAGNOSTICS}
         self._bag = BagWriter(folder / "bag", **bag_options(scenario))
-        self._collector = StepCollector(RECORDED, scenario.step_ns, scenario.telemetry_every, self._bag.write)
+        self._collector = StepCollector(topics, scenario.step_ns, scenario.telemetry_every, self._bag.write)
         self.spent_s = 0.0
 
     def take(self, time_ns: int, topic: str, values: Array) -> None:

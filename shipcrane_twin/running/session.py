@@ -9,8 +9,8 @@ from typing import Any, Literal
 from shipcrane_twin import __version__
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import plain
+from shipcrane_twin.cosim.controllers import own_chain_of, topics_of
 from shipcrane_twin.cosim.participant import state_digest
-from shipcrane_twin.cosim.topics import TOPICS
 from shipcrane_twin.record.bag import bag_options
 from shipcrane_twin.record.read import Signals, read_signals
 from shipcrane_twin.record.rescue import is_broken, rescue_bag
@@ -66,7 +66,8 @@ def run_scenario(scenario: Scenario, folder: Path, mode: Mode, record: bool, pro
         if mode == "inline":
             result = run_inline(scenario, folder, record, progress)
         else:
-            options = GraphOptions(folder, record, silence_timeout_s=scenario.lockstep.silence_timeout_s)
+            silence_s = scenario.lockstep.silence_timeout_s
+            options = GraphOptions(folder, record, own_chain_of(scenario), silence_s)
             Graph(options).run(progress)
     except NodeFailure as err:
         failure = str(err)
@@ -102,7 +103,7 @@ def conclude(
     signals = recorded_signals(scenario, folder) if record else None
     complete = not failure and not interrupted
     if not complete and not result["steps"] and signals is not None:
-        result["steps"] = recorded_steps(signals, scenario.step_ns)  # who counts them was the one that ended
+        result["steps"] = recorded_steps(signals, scenario)  # who counts them was the one that ended
     simulated_s = result["steps"] * scenario.step_ns / 1e9
     wall_s = result["wall_time_s"]
     summary: dict[str, Any] = {
@@ -127,6 +128,7 @@ def conclude(
             end_s=simulated_s,
             macro_step_ms=scenario.macro_step_ms,
             telemetry_period_ms=scenario.telemetry_period_ms,
+            topics=topics_of(scenario),
         )
         if not complete:
             gaps = [gap for gap in gaps if gap.first_s is not None]  # some were a little further than the slowest
@@ -151,7 +153,8 @@ def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:
     return read_signals(bag)
 
 
-def recorded_steps(signals: Signals, step_ns: int) -> int:
+def recorded_steps(signals: Signals, scenario: Scenario) -> int:
     """Return the last step of which every subsystem's messages are there; 0 if there is none."""
-    stamps = [signals.series[t.name].stamp_ns for t in TOPICS if t.rate == "step" and t.name in signals.series]
-    return min((int(one[-1]) // step_ns if len(one) else 0 for one in stamps), default=0)
+    every_step = [topic.name for topic in topics_of(scenario) if topic.rate == "step"]
+    stamps = [signals.series[name].stamp_ns for name in every_step if name in signals.series]
+    return min((int(one[-1]) // scenario.step_ns if len(one) else 0 for one in stamps), default=0)

@@ -7,6 +7,7 @@ import numpy as np
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
+from shipcrane_twin.cosim.controllers import ControllerCommands
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
@@ -38,6 +39,7 @@ class Crane:
         self._telemetry_every = scenario.telemetry_every
         self._carries = SCHEMES[scenario.coupling].carries_inertia
         self.commands = JointCommands(scenario.joint_names, scenario.operations)
+        self._controllers = ControllerCommands(scenario, scenario.joint_names)
         self._command = np.zeros(len(crane.links))
 
         rest = at_rest(scenario)
@@ -76,7 +78,7 @@ class Crane:
 
     def step(self, k: int, inputs: Signals) -> Signals:
         """Move the crane over step k: ship motion linear over the step, wire force held in the world."""
-        self._command = self.commands.at((k - 1) * self._step_ns)
+        self._command = self._controllers.over(self.commands.at((k - 1) * self._step_ns), inputs)
         self._state, self._effort, self._wrench, self._tip, self._inertia, self._before = crane_macro_step(
             self._chain,
             self._servo,

@@ -5,6 +5,7 @@ import numpy as np
 from shipcrane_twin.config.scenario import WINCH, Scenario
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
+from shipcrane_twin.cosim.controllers import ControllerCommands
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import NS_PER_S, seconds
@@ -22,6 +23,7 @@ class Payload:
         self._step_s = seconds(scenario.step_ns)
         self._telemetry_every = scenario.telemetry_every
         self.commands = JointCommands((WINCH,), scenario.operations)
+        self._controllers = ControllerCommands(scenario, (WINCH,))
         self._command = np.zeros(1)
         releases = [event.at_s for event in scenario.events if event.event == "release_payload"]
         self._releases_ns = sorted(round(at_s * NS_PER_S) for at_s in releases)
@@ -46,7 +48,7 @@ class Payload:
             self._state = self._state.copy()
             self._state[8] = self._hook_mass
         tip_next = tip_motion(inputs["/crane/tip"])
-        self._command = self.commands.at(time_ns)
+        self._command = self._controllers.over(self.commands.at(time_ns), inputs)
         self._state, self._force_w, self._tension_max = payload_step(
             self._params, self._state, self._command[0], self._tip, tip_next, self._step_s
         )
