@@ -6,6 +6,7 @@ A fault is an event of the scenario that happens now.
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -29,6 +30,8 @@ DIAGNOSTICS_PERIOD_S = 1.0
 WORLD = "map"
 POWER = "power_share"
 FAULT = "fault."
+
+OrderT = TypeVar("OrderT", str, float)
 
 
 class VesselDesk:
@@ -142,7 +145,7 @@ class VesselDesk:
         return message
 
 
-def declare_order(node: Node, name: str, default: str | float, about: str) -> None:
+def declare_order(node: Node, name: str, default: OrderT, about: str) -> None:
     """Declare a parameter that is an order; at the start there is none to be given.
 
     Raises

@@ -64,7 +64,7 @@ OVERRIDES = {
     ),
     "joints in another order": ("crane.links.0.joint=turn", "expected the joints slew, boom, knuckle, telescope"),
     "unit clash of sensors": ("dp.sensors.gyro.noise_std_rad=0.1", "unit clash: this setting is noise_std_deg"),
-    "no such observer": ("dp.observer.kind=kalman", "dp.observer.kind is 'kalman', expected 'passive', 'ekf' or 'none'"),
+    "no such observer": ("dp.observer.kind=kalman", "kind is 'kalman', expected 'passive', 'ekf' or 'none'"),
     "no such thruster": (
         "events=[{label: a, at_s: 1.0, event: thruster_fault, which: rudder, fault: failed}]",
         "events[0].which is 'rudder', expected one of azimuth_port, azimuth_starboard, bow_tunnel with the event "
@@ -86,7 +86,7 @@ OVERRIDES = {
         "events=[{label: a, at_s: 1.0, event: thruster_fault, which: bow_tunnel, fault: limited}]",
         "events[0].share is None, expected a share with thruster_fault",
     ),
-    "power limit without a share": ("events=[{label: a, at_s: 1.0, event: power_limit}]", "expected a share with power"),
+    "power limit without a share": ("events=[{label: a, at_s: 1.0, event: power_limit}]", "expected a share with"),
     "share of a failed thruster": (
         "events=[{label: a, at_s: 1.0, event: thruster_fault, which: bow_tunnel, fault: failed, share: 0.5}]",
         "events[0].share is 0.5, expected none with thruster_fault",
