@@ -11,7 +11,7 @@ from shipcrane_twin.cosim.topics import BY_NAME, JOINT_FIELDS, JOINTS, TOPICS
 DOCS = Path(__file__).resolve().parents[1] / "msg_docs"
 PAGES = {path.name: path.read_text(encoding="utf-8") for path in sorted(DOCS.glob("*.md"))}
 RATES = {"step": "every macro step", "telemetry": "every telemetry period", "once": "once", "irregular": "irregular"}
-SERVICES = {"/clock/pause", "/clock/step"}
+SERVICES = {"/clock/pause", "/clock/step", "/dp/enable"}
 NOT_OURS = {"/parameter_events", "/rosout"}
 RCLPYS = {"use_sim_time", "start_type_description_service"}
 
@@ -55,7 +55,7 @@ def test_facts_are_those_of_the_topic_table(topic):
     assert told["type"] == topic.type
     assert told["frame"] == (topic.frame or "none")
     assert told.get("child frame", "") == topic.child_frame
-    assert told["publisher"] == topic.publisher
+    assert told["publisher"] == ", ".join((topic.publisher, *topic.others))
     assert told["rate"].startswith(RATES[topic.rate])
     assert {name for name, topics in INPUTS.items() if topic.name in topics} <= listeners(topic.name)
 
@@ -104,9 +104,10 @@ def test_depth_of_the_queues_is_the_one_told():
 
 def documented_parameters(node):
     tables = re.split(r"^The clock alone has$|^They are read once", PAGES["clock.md"], flags=re.M)
+    own = {"clock": [tables[-1]], "vessel": [PAGES["operator_commands.md"]]}
     return {
         row[0].strip("`"): row[1]
-        for table in (tables[0], *([tables[-1]] if node == "clock" else []))
+        for table in (tables[0], *own.get(node, ()))
         for row in rows(table.partition("## Parameters")[2] or table)
         if len(row) == 3 and row[0] != "parameter"
     }
@@ -132,8 +133,8 @@ class TestRunningGraph:
         found = {name: facts for name, facts in running.topics().items() if name not in NOT_OURS}
         assert found.keys() == BY_NAME.keys()
         for name, seen in found.items():
-            publishers = [node.replace("test_operator", "operator") for node, _, _ in seen["publishers"]]
-            assert (seen["types"], publishers) == ([facts(name)["type"]], [facts(name)["publisher"]]), name
+            publishers = sorted(node.replace("test_operator", "operator") for node, _, _ in seen["publishers"])
+            assert (seen["types"], ", ".join(publishers)) == ([facts(name)["type"]], facts(name)["publisher"]), name
             assert set(seen["listeners"]) == listeners(name), name
 
     def test_quality_of_service_is_as_told(self, running):
@@ -145,7 +146,12 @@ class TestRunningGraph:
 
     def test_services_are_as_told(self, running):
         own = {name: types for name, types in running.services().items() if name in SERVICES or "std_srvs" in types[0]}
-        told = {row[0].strip("`"): [row[1].strip("`")] for row in rows(PAGES["clock.md"]) if row[0].startswith("`/")}
+        told = {
+            row[0].strip("`"): [row[1].strip("`")]
+            for text in PAGES.values()
+            for row in rows(text)
+            if row[0].startswith("`/") and "/srv/" in row[1]
+        }
         assert own == told
 
     @pytest.mark.parametrize("node", NODES)
@@ -154,4 +160,4 @@ class TestRunningGraph:
         assert declared.keys() == documented_parameters(node).keys()
         for name, (description, read_only) in declared.items():
             assert description
-            assert read_only == (name != "speed")
+            assert read_only == (name not in ("speed", "power_share") and not name.startswith("fault."))

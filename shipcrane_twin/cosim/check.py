@@ -11,6 +11,7 @@ from shipcrane_twin.cosim.build import crane_chain, crane_drives
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import Rest, at_rest
 from shipcrane_twin.cosim.subsystems import make_subsystem
+from shipcrane_twin.cosim.topics import THRUSTERS
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import ChainParams
 from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
@@ -33,11 +34,18 @@ def check_buildable(scenario: Scenario) -> None:
     name = scenario.name
     if scenario.coupling not in SCHEMES:
         raise ConfigError(f"{name}: coupling is {scenario.coupling!r}; {nearest(scenario.coupling, list(SCHEMES))}")
+    names = tuple(thruster.name for thruster in scenario.vessel.thrusters)
+    if names != THRUSTERS:
+        raise ConfigError(
+            f"{name}: vessel.thrusters are {', '.join(names)}, expected {', '.join(THRUSTERS)} in this order; "
+            "their names are those that /thrusters/joint_states publishes"
+        )
     try:
         chain = crane_chain(scenario.crane)
         drives = crane_drives(scenario.crane)
         rest = at_rest(scenario)
-        make_subsystem("crane", scenario)
+        for part in ("vessel", "crane"):
+            make_subsystem(part, scenario)
     except ValueError as err:
         raise ConfigError(f"{name}: {err}") from None
     ends = np.sort([joints_from_lengths(drives, drives.length_min), joints_from_lengths(drives, drives.length_max)], 0)

@@ -8,7 +8,7 @@ import numpy as np
 from shipcrane_twin.config.dp import SetpointConfig, TimedSetpointConfig
 from shipcrane_twin.config.scenario import NS_PER_S, EventConfig, Scenario
 from shipcrane_twin.control.allocation import allocate, allocation_start, horizontal_load
-from shipcrane_twin.control.controller import controller_start, controller_update
+from shipcrane_twin.control.controller import controller_start, controller_update, to_world
 from shipcrane_twin.control.controller import horizontal_load as crane_horizontal
 from shipcrane_twin.control.ekf import ekf_start, ekf_step
 from shipcrane_twin.control.observer import passive_start, passive_step
@@ -20,7 +20,7 @@ from shipcrane_twin.cosim import build, dp_build
 from shipcrane_twin.cosim.dp_faults import DpFaults
 from shipcrane_twin.cosim.weather import SENSORS, stream
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.frames import matrix_from_quat, quat_from_euler, wrap_angle, yaw_from_heading
+from shipcrane_twin.physics.frames import cross, matrix_from_quat, quat_from_euler, wrap_angle, yaw_from_heading
 from shipcrane_twin.physics.propeller import speed_for_thrust
 from shipcrane_twin.physics.sensors import (
     antenna_position,
@@ -37,8 +37,12 @@ from shipcrane_twin.physics.wind import wind_load
 IDLE_SHARE = 0.01
 """Of `load_max`: a demand below it while DP is off leaves the thrusters idle."""
 
-SHORT_SHARE = 1e-3
-"""Of `load_max`: what the thrusters give less than asked for that is worth a warning."""
+SHORT_SHARE, SHORT_MEMORY_S = 0.03, 10.0
+"""Of `load_max`: what the thrusters give less than asked for, as a mean over that time [s], that is worth a warning.
+For moments they always do: an azimuth has to turn first."""
+
+THRUST_BY_POWER = 2.0 / 3.0
+"""Thrust at rest grows with this power of the shaft's power."""
 
 
 @dataclass(slots=True)
@@ -101,7 +105,7 @@ class Positioning:
             for name, params in self._sensors.items()
         }
         self.measured = {name: np.full(p.noise_std.size, np.nan) for name, p in self._sensors.items()}
-        cog = np.array(scenario.vessel.cog_m)
+        self._cog = cog = np.array(scenario.vessel.cog_m)
         self._crane_arm = np.array(scenario.crane.base_m) - cog
         sensors = dp.sensors
         self._antenna, self._mru, self._mast = map(
@@ -116,7 +120,7 @@ class Positioning:
         self._reference_state = reference_start(self._reference, pose, np.zeros(3))
         self._weathervane_state = np.zeros(2)
         self._allocation_state = allocation_start(self._allocation, azimuth)
-        self._achieved = np.zeros(3)
+        self._achieved, self._short = np.zeros(3), np.zeros(3)
         self.pose, self.velocity_b, self.demand = pose.copy(), np.zeros(3), np.zeros(3)
         self.command = np.column_stack((azimuth, np.zeros_like(azimuth)))
         self._switch: bool | None = None
@@ -124,7 +128,8 @@ class Positioning:
 
         self._setpoint = np.zeros(3)
         self._setpoints = [(0, self._pose_of(dp.setpoint))]
-        self._setpoints += [(round(point.at_s * NS_PER_S), self._pose_of(point)) for point in dp.setpoints]
+        later = sorted(dp.setpoints, key=attrgetter("at_s"))
+        self._setpoints += [(round(point.at_s * NS_PER_S), self._pose_of(point)) for point in later]
         self.faults = DpFaults([thruster.name for thruster in scenario.vessel.thrusters])
         own = (event for event in scenario.events if event.event != "release_payload")
         self._events = sorted(own, key=attrgetter("at_s"))
@@ -145,17 +150,20 @@ class Positioning:
 
     def update(self, time_ns: int, truth: Truth) -> None:
         """Run the chain once; `command` holds the thrusters' commands afterwards."""
-        while self._events and round(self._events[0].at_s * NS_PER_S) <= time_ns:
-            self.happen(self._events.pop(0))
         measured = self._measure(truth)
         wind = self._wind_load()
         crane = self._crane_load(truth) if self._knows_crane else np.zeros(3)
         self._estimate(measured, truth, wind + crane)
         self._control(time_ns, truth, wind, crane)
 
-    def move_to(self, pose: Array) -> None:
-        """Take an operator's set-point (east, north, yaw), which replaces the scenario's from now on."""
-        self._setpoints = [(0, np.asarray(pose, float))]
+    def move_to(self, point: SetpointConfig) -> None:
+        """Take an operator's set-point, which replaces the scenario's from now on."""
+        self._setpoints = [(0, self._pose_of(point))]
+
+    def happen_until(self, time_ns: int) -> None:
+        """Let the scenario's events up to a time happen; called at every step, as an operator's orders come at any."""
+        while self._events and round(self._events[0].at_s * NS_PER_S) <= time_ns:
+            self.happen(self._events.pop(0))
 
     def happen(self, event: EventConfig) -> None:
         """Let an event happen, of the scenario or by an operator's order."""
@@ -171,7 +179,7 @@ class Positioning:
         lost = [axis for axis, seconds in zip(("east", "north", "heading"), age, strict=True) if seconds > self._lost_s]
         if lost:
             told.append(f"dead reckoning: no {', '.join(lost)} for {age.max():.0f} s")
-        if self.on and (np.abs(self.demand - self._achieved) > SHORT_SHARE * self._controller.load_max).any():
+        if self.on and (np.abs(self._short) > SHORT_SHARE * self._controller.load_max).any():
             told.append("the thrusters cannot give what DP asks for")
         return told
 
@@ -219,7 +227,8 @@ class Positioning:
             omega = wave_frequency(self._frequency_state)
         if observer.kind == "none":
             self.pose = np.where(np.isfinite(measured), measured, self.pose)
-            self.velocity_b = truth.odom[[7, 8, 12]]
+            at_cog = truth.odom[7:10] + cross(truth.odom[10:13], self._cog)
+            self.velocity_b = np.array([at_cog[0], at_cog[1], truth.odom[12]])
             return
         known = known + horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust)
         waves = np.full(3, omega)
@@ -233,9 +242,7 @@ class Positioning:
         was_on = self.on
         self.on = time_ns >= round(self._dp.enabled_at_s * NS_PER_S) if self._switch is None else self._switch
         if self.on and not was_on:
-            cos, sin = np.cos(self.pose[2]), np.sin(self.pose[2])
-            surge, sway, turn = self.velocity_b
-            drift_w = np.array([cos * surge - sin * sway, sin * surge + cos * sway, turn])
+            drift_w = to_world(self.velocity_b, np.cos(self.pose[2]), np.sin(self.pose[2]))
             self._reference_state = reference_start(self._reference, self.pose, drift_w)
             self._setpoint[2] = self.pose[2]
         for from_ns, point in self._setpoints:
@@ -263,7 +270,7 @@ class Positioning:
 
     def _allocate(self, truth: Truth) -> None:
         """Share the demand among the thrusters that obey; the others' push is taken off it."""
-        available = self.faults.available
+        available = self.faults.available * self.faults.power_share**THRUST_BY_POWER
         stray = horizontal_load(self._allocation, truth.thruster_state[:, 0], truth.thrust * (available == 0.0))
         if not self.on and (np.abs(self.demand) < IDLE_SHARE * self._controller.load_max).all():
             available = np.zeros_like(available)
@@ -271,6 +278,8 @@ class Positioning:
             self._allocation, self._allocation_state, self.demand - stray, truth.thruster_state[:, 0], available
         )
         self._achieved = given + stray
+        share = self._controller.period / SHORT_MEMORY_S
+        self._short = (1.0 - share) * self._short + share * (self.demand - self._achieved)
         azimuth, thrust = self._allocation_state[:, 0].copy(), self._allocation_state[:, 1].copy()
         speed = speed_for_thrust(self.thrusters, truth.thruster_state, thrust, self.velocity_b)
         self.command = np.column_stack((azimuth, speed))

@@ -43,6 +43,8 @@ class Topic:
         ROS name and message type.
     publisher : str
         The subsystem (or ``clock``, ``operator``) that publishes it.
+    others : tuple of str
+        Who publishes there besides.
     rate : str
         ``step``: every macro step; ``telemetry``: every telemetry period; ``once``: at t = 0, latched;
         ``irregular``.
@@ -58,6 +60,7 @@ class Topic:
     type: str
     publisher: str
     about: str
+    others: tuple[str, ...] = ()
     rate: Rate = "step"
     frame: str = ""
     child_frame: str = ""
@@ -217,7 +220,7 @@ TOPICS: tuple[Topic, ...] = (
         rate="telemetry",
         frame="map",
         child_frame="vessel_level",
-        about="Observer: low-frequency pose of the CoG (height zero), velocity; the z of both twists' rest is zero.",
+        about="Observer: low-frequency pose of the CoG (height zero); surge, sway and yaw rate, the rest is zero.",
     ),
     Topic(
         name="/dp/bias",
@@ -325,8 +328,9 @@ TOPICS: tuple[Topic, ...] = (
         name="/diagnostics",
         type=DIAGNOSTICS,
         publisher="clock",
+        others=("vessel",),
         rate="irregular",
-        about="State of the lockstep once per wall-clock second: time, real-time factor, worst step, who is silent.",
+        about="State of the lockstep, and of DP, once per second of wall time: who is silent, what is broken.",
     ),
 )
 

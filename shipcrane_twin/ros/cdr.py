@@ -196,6 +196,32 @@ def read_stamp(message: bytes) -> int:
     return int(sec) * 1_000_000_000 + int(nanosec)
 
 
+def check_layout(topic: Topic, message: bytes) -> None:
+    """Raise CdrError unless a serialized message from outside can be one of a topic, JointState or PoseStamped."""
+    if topic.type == JOINTS:
+        read_joint_velocities(message)
+    else:
+        read_pose(message)
+
+
+def read_pose(message: bytes) -> tuple[str, Sequence[float]]:
+    """Return frame, and position and quaternion (7,) of any serialized PoseStamped.
+
+    Raises
+    ------
+    CdrError
+        If the bytes are not a PoseStamped.
+    """
+    try:
+        start = ORIGIN + 12
+        end = skip_string(message, ORIGIN + 8)
+        frame = message[start : end - 1].decode()
+        end += -(end - ORIGIN) % 8
+        return frame, struct.unpack_from("<7d", message, end)
+    except (struct.error, ValueError) as err:
+        raise CdrError(f"not a PoseStamped: {err}") from None
+
+
 def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
     """Return names and velocities of any serialized JointState.
 

@@ -12,7 +12,7 @@ from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.topics import BY_NAME
 from shipcrane_twin.record.bag import RECORDED, BagWriter, bag_options
 from shipcrane_twin.record.collector import StepCollector
-from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities, read_stamp
+from shipcrane_twin.ros.cdr import CdrError, Template, check_layout, read_stamp
 from shipcrane_twin.ros.links import LOOP_QOS, Inbox, LoopOwned, Mailroom, message_class
 from shipcrane_twin.ros.parameters import declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, write_result
@@ -100,7 +100,7 @@ class RecorderNode:
             while (message := inbox.take()) is not None:
                 try:
                     if topic.publisher == "operator":
-                        read_joint_velocities(message)  # what is no JointState would spoil the bag
+                        check_layout(topic, message)  # anything else would spoil the bag
                         stamp = max(self._collector.complete, 0) * self._step_ns
                     else:
                         stamp = read_stamp(message)

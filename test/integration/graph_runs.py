@@ -96,10 +96,10 @@ def run_graph(folder, scenario, *, overrides=(), domain=None, record=False, prog
     return result["state_digest"]
 
 
-def start_node_alone(name, folder, domain, scenario="case2"):
+def start_node_alone(name, folder, domain, scenario="case2", **more):
     """Start one node the way ``ros2 run`` does, with its log in the folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    parameters = {"scenario": str(scenario), "run_dir": str(folder)}
+    parameters = {"scenario": str(scenario), "run_dir": str(folder), **more}
     arguments = [part for key, value in parameters.items() for part in ("-p", f"{key}:={value}")]
     with (folder / f"{name}.log").open("wb") as log:
         return subprocess.Popen(

@@ -9,6 +9,8 @@ import time
 from importlib import import_module
 
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -26,6 +28,8 @@ class Operator:
     def __init__(self):
         self.node = Node("test_operator")
         self.command = self.node.create_publisher(JointState, COMMAND, 10)
+        self.setpoint = self.node.create_publisher(PoseStamped, "/dp/setpoint", 10)
+        self.enable_client = self.node.create_client(SetBool, "/dp/enable")
         self.pause_client = self.node.create_client(SetBool, "/clock/pause")
         self.step_client = self.node.create_client(Trigger, "/clock/step")
         self.heard = {}
@@ -45,6 +49,24 @@ class Operator:
         self.wait(self.pause_client.service_is_ready)
         reply = self.answer(self.pause_client.call_async(SetBool.Request(data=data)))
         return [reply.success, reply.message]
+
+    def enable(self, data):
+        self.wait(self.enable_client.service_is_ready)
+        reply = self.answer(self.enable_client.call_async(SetBool.Request(data=data)))
+        return [reply.success, reply.message]
+
+    def move_to(self, place, quat, frame="map"):
+        self.wait(lambda: self.setpoint.get_subscription_count() >= 1)
+        message = PoseStamped()
+        message.header.frame_id = frame
+        at, turn = message.pose.position, message.pose.orientation
+        at.x, at.y = place
+        turn.x, turn.y, turn.z, turn.w = quat
+        self.setpoint.publish(message)
+
+    def move_to_bytes(self, text):
+        self.wait(lambda: self.setpoint.get_subscription_count() >= 1)
+        self.setpoint.publish(bytes.fromhex(text))
 
     def step(self):
         self.wait(self.step_client.service_is_ready)
@@ -84,6 +106,22 @@ class Operator:
 
         message_class = getattr(import_module(f"{package}.msg"), name)
         self.node.create_subscription(message_class, topic, hear, QoSProfile(depth=depth))
+
+    def listen_for_status(self, topic):
+        """Keep [stamp in ns, level, name, message, values] of every status in diagnostics."""
+        log = self.heard[topic] = []
+
+        def hear(message):
+            stamp = message.header.stamp
+            for status in message.status:
+                values = {pair.key: pair.value for pair in status.values}
+                time_ns = stamp.sec * 10**9 + stamp.nanosec
+                log.append([time_ns, ord(status.level), status.name, status.message, values])
+
+        self.node.create_subscription(DiagnosticArray, topic, hear, QoSProfile(depth=5000))
+
+    def statuses(self, topic):
+        return self.heard[topic]
 
     def stamps(self, topic):
         return self.heard[topic]

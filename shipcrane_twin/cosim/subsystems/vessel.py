@@ -44,8 +44,10 @@ class Vessel:
     def step(self, k: int, inputs: Signals) -> Signals:
         """Move the ship over step k."""
         self._crane = inputs["/crane/base_wrench"]
+        time_ns = (k - 1) * self._step_ns
+        self.positioning.happen_until(time_ns)
         if (k - 1) % self._dp_every == 0:
-            self._position((k - 1) * self._step_ns)
+            self._position(time_ns)
         dp = self.positioning
         self._wind_w = inputs["/environment/wind"][:3]
         self._memory = vessel_macro_step(
