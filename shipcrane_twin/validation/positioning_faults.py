@@ -19,16 +19,17 @@ def event(at_s: float, kind: str, more: str = "") -> str:
 
 
 CASES = {
-    "azimuth lost": [event(FAULT_S, "thruster_fault", ", which: azimuth_port, fault: failed")],
+    "starboard azimuth lost": [event(FAULT_S, "thruster_fault", ", which: azimuth_starboard, fault: failed")],
     "half the power": [event(FAULT_S, "power_limit", ", share: 0.5")],
     "position lost": [
         event(FAULT_S, "sensor_fault", ", which: position, fault: drop_out"),
         event(RETURN_S, "sensor_fault", ", which: position, fault: none"),
     ],
+    "port azimuth lost": [event(FAULT_S, "thruster_fault", ", which: azimuth_port, fault: failed")],
     "drive-off": [event(FAULT_S, "thruster_fault", ", which: azimuth_port, fault: runaway")],
     "drift-off": [event(FAULT_S, "power_limit", ", share: 0.0")],
 }
-HELD = ("azimuth lost", "half the power")
+HELD = ("starboard azimuth lost", "half the power")
 
 
 def changes(case: str) -> tuple[str, ...]:

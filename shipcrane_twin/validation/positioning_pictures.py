@@ -85,9 +85,9 @@ def box(run: Ride) -> Figure:
     figure = blank("Box manoeuvre in 5 m/s of wind: 10 m by 10 m, 45 degrees of heading on every side", 6.0)
     parts = figure.subplot_mosaic([["track", "heading"], ["track", "rate"]])
     track, heading, rate = parts["track"], parts["heading"], parts["rate"]
-    pose = slow(run.pose, run.step_s)
-    track.plot(pose[:, 0], pose[:, 1], color=COLOURS[0], linewidth=1.4, label="CoG, slow motion")
-    track.plot(run.reference[:, 0], run.reference[:, 1], color=COLOURS[1], linewidth=1.0, label="reference")
+    pose, there = slow(run.pose, run.step_s), run.time_s >= run.scenario.dp.setpoints[0].at_s
+    track.plot(pose[there, 0], pose[there, 1], color=COLOURS[0], linewidth=1.4, label="CoG, slow motion")
+    track.plot(run.reference[there, 0], run.reference[there, 1], color=COLOURS[1], linewidth=1.0, label="reference")
     places = np.unique(np.round(run.setpoint, 6), axis=0)
     track.plot(places[:, 0], places[:, 1], "o", color=INK, markersize=5, label="set-points, bow")
     track.quiver(
@@ -126,9 +126,8 @@ def lift(runs: Mapping[str, Ride]) -> Figure:
 def faults(runs: Mapping[str, Ride], held: tuple[str, ...]) -> Figure:
     """Draw excursions after faults: those that DP holds, and those that end in an excursion."""
     figure = blank(f"Faults in E2 at {FAULT_S:.0f} s (dotted)", 4.4)
-    every = {name: runs[name] for name in runs}
     for axes, inside in zip(figure.subplots(1, 2), (True, False), strict=True):
-        for (name, run), colour in zip(every.items(), COLOURS, strict=False):
+        for (name, run), colour in zip(runs.items(), (*COLOURS, INK), strict=False):
             if (name in held or name == "position lost") == inside:
                 rows = run.time_s >= FAULT_S - 30.0
                 axes.plot(run.time_s[rows], off_setpoint(run)[0][rows], color=colour, linewidth=1.2, label=name)
