@@ -11,7 +11,7 @@ from shipcrane_twin.config.scenario import NS_PER_S, Scenario
 from shipcrane_twin.control.allocation import horizontal_load
 from shipcrane_twin.cosim import build, dp_build
 from shipcrane_twin.cosim.inline import InlineRun
-from shipcrane_twin.cosim.subsystems import Vessel
+from shipcrane_twin.cosim.subsystems.vessel import Vessel
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import euler_from_matrix, matrix_from_quat, wrap_angle, yaw_from_heading
 from shipcrane_twin.physics.wind import wind_load
@@ -87,9 +87,10 @@ def ride(name: str, changes: Sequence[str] = ()) -> Ride:
             row += [pose[:2], [euler_from_matrix(matrix_from_quat(pose[3:7]))[2]]]
         row += [seen["/dp/bias"][HORIZONTAL], seen["/dp/wrench"][HORIZONTAL], thrust + blown]
         rows.append(np.concatenate([*row, joints[:count], joints[2 * count :]]))
-        told |= dict.fromkeys(text.split(" for ")[0] for text in vessel.warnings())
+        told |= dict.fromkeys(text.split(" for ")[0] for text in vessel.warnings())  # less the seconds it lasts
     table = np.array(rows)
-    time_s = np.arange(len(table)) * (scenario.telemetry_every * scenario.step_ns / NS_PER_S)
+    every_s = scenario.telemetry_every * scenario.step_ns / NS_PER_S
+    time_s = np.arange(len(table), dtype=np.float64) * every_s
     pose, reference, estimate, bias, demand, known = (table[:, 3 * i : 3 * i + 3] for i in range(6))
     return Ride(
         scenario, time_s, pose, setpoints(scenario, time_s), reference, estimate, bias, demand, known,
@@ -136,6 +137,4 @@ def slow(values: Array, step_s: float, corner_hz: float = SLOW_HZ) -> Array:
 def to_level(vec_w: Array, yaw: Array) -> Array:
     """Return (east, north, yaw) components (n, 3) along the ship's heading (n,): surge, sway, yaw."""
     cos, sin = np.cos(yaw), np.sin(yaw)
-    return np.column_stack(
-        [cos * vec_w[:, 0] + sin * vec_w[:, 1], cos * vec_w[:, 1] - sin * vec_w[:, 0], vec_w[:, 2]]
-    )
+    return np.column_stack([cos * vec_w[:, 0] + sin * vec_w[:, 1], cos * vec_w[:, 1] - sin * vec_w[:, 0], vec_w[:, 2]])

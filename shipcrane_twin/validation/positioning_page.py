@@ -10,12 +10,13 @@ import numpy as np
 
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.hydro.compare import Row
-from shipcrane_twin.validation import capability, positioning_words as words
+from shipcrane_twin.validation import capability
 from shipcrane_twin.validation import positioning_faults as faults
 from shipcrane_twin.validation import positioning_moves as moves
 from shipcrane_twin.validation import positioning_pictures as drawing
 from shipcrane_twin.validation import positioning_station as station
 from shipcrane_twin.validation import positioning_theory as theory
+from shipcrane_twin.validation import positioning_words as words
 from shipcrane_twin.validation.page import Picture, Section, held, page_with
 from shipcrane_twin.validation.pictures import save
 from shipcrane_twin.validation.positioning import ride

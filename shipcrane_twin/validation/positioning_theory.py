@@ -111,12 +111,12 @@ def allocate_many(scenario: Scenario, count: int = DEMANDS, seed: int = 2019) ->
 def allocation_rows(found: Allocated, count: int = DEMANDS) -> list[Row]:
     """Return what the demands came to."""
     return [
-        Row("allocation: feasible demands, missed part of full load", found.missed, 1e-6, "of 1", f"{count // 2} of them"),
+        Row("allocation: feasible demands, missed part of full load", found.missed, 1e-6, "of 1", f"{count // 2} ones"),
         Row("allocation: thrust over its limit", max(found.over, 0.0), 1e-6, "of 1", f"{count} demands"),
         Row("allocation: azimuths in a forbidden zone", float(found.in_zone), 0.0, f"of {count}"),
         Row(
             "allocation: infeasible demands, position first, direction of the force", found.turned_deg, 0.2, "deg",
-            f"{found.infeasible} of them",
+            f"{found.infeasible} ones",
         ),
         Row("allocation: worst solve time", found.longest_ms, None, "ms", f"median {found.median_ms:.2f} ms"),
     ]  # fmt: skip
@@ -151,7 +151,8 @@ def stability_rows(scenario: Scenario) -> list[Row]:
         for name, report in (("without observer", bare), ("with observer", filtered)):
             note = f"gain up {report.gain_up_db[i]:.1f} dB, down {-report.gain_down_db[i]:.1f} dB, "
             note += f"sensitivity peak {report.sensitivity_peak[i]:.2f}, crossover {report.crossover[i]:.2f} rad/s"
-            rows.append(Row(f"loop, {axis}, {name}: phase margin", float(report.phase_margin_deg[i]), None, "deg", note))
+            margin = float(report.phase_margin_deg[i])
+            rows.append(Row(f"loop, {axis}, {name}: phase margin", margin, None, "deg", note))
     return rows
 
 
