@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS
 from shipcrane_twin.cosim.participant import Participant, state_digest
+from shipcrane_twin.cosim.subsystems import Subsystem
 from shipcrane_twin.physics.arrays import Array
 
 Sink = Callable[[int, str, Array], None]
@@ -48,6 +49,10 @@ class InlineRun:
     def latest(self) -> dict[str, Array]:
         """The latest value of every topic."""
         return self._latest
+
+    def subsystem(self, name: str) -> Subsystem:
+        """Return a subsystem of the chain, to look into."""
+        return next(p.subsystem for p in self._participants if p.name == name)
 
     @property
     def digest(self) -> str:
