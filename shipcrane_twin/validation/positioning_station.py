@@ -87,6 +87,8 @@ def wave_rows(weather: str, filtered: Ride, unfiltered: Ride) -> list[Row]:
             size = " against ".join(f"{np.sqrt(of[i]) / 1e3:.2g}" for of in power)
             name = f"{weather}: {axis}, {what}, wave-frequency power with over without filter"
             rows.append(Row(name, power[0][i] / power[1][i], 0.10 if judged else None, "", f"RMS {size} {unit}"))
+        force = power[0][:2].sum() / power[1][:2].sum()
+        rows.append(Row(f"{weather}: force, {what}, wave-frequency power with over without filter", force, 0.10, ""))
     return rows
 
 
