@@ -1,4 +1,4 @@
-"""The command line: run, check, list, report, demo, bench; hydro has its own file."""
+"""The command line: run, check, list, report, demo, bench; hydro and dp have their own files."""
 
 import signal
 import sys
@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from shipcrane_twin import __version__
+from shipcrane_twin.cli_dp import app as dp_app
 from shipcrane_twin.cli_hydro import app as hydro_app
 from shipcrane_twin.config.load import list_scenarios, load_scenario, read_yaml
 from shipcrane_twin.config.scenario import Scenario
@@ -29,6 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.add_typer(hydro_app, name="hydro")
+app.add_typer(dp_app, name="dp")
 console = Console()
 errors = Console(stderr=True)
 

@@ -211,9 +211,9 @@ def origin(key: Sequence[Any], path: Path, own: dict[str, Any], changed: list[li
 
 
 def look_up(data: Any, key: Sequence[Any]) -> Any:
-    """Return the value at a key path of plain data."""
+    """Return the value at a key path of plain data; None for a key that is left out."""
     for part in key:
-        data = data[part]
+        data = data.get(part) if isinstance(data, dict) else data[part]
     return data
 
 

@@ -27,7 +27,6 @@ from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import wrap_angle
 
 N = MODEL_STATES
-COVARIANCE = slice(SHARED_STATES, SHARED_STATES + N * N)
 
 
 class EkfParams(NamedTuple):

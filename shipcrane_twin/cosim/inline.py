@@ -7,6 +7,7 @@ from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.controllers import chain_of, controller_topic, inputs_of, own_chain_of
 from shipcrane_twin.cosim.participant import Participant, state_digest
+from shipcrane_twin.cosim.subsystems import Subsystem
 from shipcrane_twin.physics.arrays import Array
 
 Sink = Callable[[int, str, Array], None]
@@ -76,6 +77,10 @@ class InlineRun:
     def latest(self) -> dict[str, Array]:
         """The latest value of every topic."""
         return self._latest
+
+    def subsystem(self, name: str) -> Subsystem:
+        """Return a subsystem of the chain, to look into."""
+        return next(p.subsystem for p in self._participants if p.name == name)
 
     @property
     def digest(self) -> str:

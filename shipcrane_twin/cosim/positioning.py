@@ -8,7 +8,7 @@ import numpy as np
 from shipcrane_twin.config.dp import SetpointConfig, TimedSetpointConfig
 from shipcrane_twin.config.scenario import NS_PER_S, EventConfig, Scenario
 from shipcrane_twin.control.allocation import allocate, allocation_start, horizontal_load
-from shipcrane_twin.control.controller import controller_start, controller_update
+from shipcrane_twin.control.controller import controller_start, controller_update, to_world
 from shipcrane_twin.control.controller import horizontal_load as crane_horizontal
 from shipcrane_twin.control.ekf import ekf_start, ekf_step
 from shipcrane_twin.control.observer import passive_start, passive_step
@@ -242,9 +242,7 @@ class Positioning:
         was_on = self.on
         self.on = time_ns >= round(self._dp.enabled_at_s * NS_PER_S) if self._switch is None else self._switch
         if self.on and not was_on:
-            cos, sin = np.cos(self.pose[2]), np.sin(self.pose[2])
-            surge, sway, turn = self.velocity_b
-            drift_w = np.array([cos * surge - sin * sway, sin * surge + cos * sway, turn])
+            drift_w = to_world(self.velocity_b, np.cos(self.pose[2]), np.sin(self.pose[2]))
             self._reference_state = reference_start(self._reference, self.pose, drift_w)
             self._setpoint[2] = self.pose[2]
         for from_ns, point in self._setpoints:

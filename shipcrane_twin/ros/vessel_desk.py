@@ -5,6 +5,7 @@ A fault is an event of the scenario that happens now.
 """
 
 from collections.abc import Iterable
+from typing import TypeVar
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -28,6 +29,8 @@ from shipcrane_twin.ros.parameters import declare
 WORLD = "map"
 POWER = "power_share"
 FAULT = "fault."
+
+OrderT = TypeVar("OrderT", str, float)
 
 
 class VesselDesk:
@@ -120,7 +123,7 @@ class VesselDesk:
         self._orders.publish(stamped(told, self._now_ns))
 
 
-def declare_order(node: Node, name: str, default: str | float, about: str) -> None:
+def declare_order(node: Node, name: str, default: OrderT, about: str) -> None:
     """Declare a parameter that is an order; at the start there is none to be given.
 
     Raises

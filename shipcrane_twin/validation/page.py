@@ -100,13 +100,21 @@ def page_text(sections: Sequence[Section], command: str, source: str, folder: Pa
         Where the page goes; links to pictures are relative to it.
     """
     good, all_of = held(sections)
-    lines = [
+    opening = [
         "# Validation of the sea and the hull",
         "",
         f"Written by `{command}`; {good} of {all_of} figures hold their bars. A figure in per cent is a share",
         "of what its part names; one without a bar is told, not judged. Directions are where waves go:",
         "0 following sea, 90 to port, 180 head sea.",
         f"The ship is the one of case 3; its database: {source}.",
+    ]
+    return page_with(opening, sections, folder)
+
+
+def page_with(opening: Sequence[str], sections: Sequence[Section], folder: Path) -> str:
+    """Return a page in Markdown: its first lines, what is missed and what is thin, then all sections."""
+    lines = [
+        *opening,
         "",
         "Missed:",
         "",

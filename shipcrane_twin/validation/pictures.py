@@ -23,10 +23,10 @@ TOWARD = "direction the wave goes to [deg]"
 MARK = 4.5
 
 
-def save(figure: Figure, folder: Path, name: str) -> Path:
-    """Write a figure as PNG and return where it is."""
+def save(figure: Figure, folder: Path, name: str, page: str = "validation") -> Path:
+    """Write a figure of a page as PNG and return where it is."""
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"validation_{name}.png"
+    path = folder / f"{page}_{name}.png"
     figure.savefig(path, dpi=DPI, metadata={"Software": None})
     return path
 

@@ -152,6 +152,22 @@ def flow_along_row(path, data):
     return data
 
 
+def hungry():
+    """Thrusters with less power than they want, which fail in the end; a heading soon reached; DP goes off."""
+    data = busy()
+    data["vessel"]["power_total_max_kw"] = 0.01
+    data["environment"]["current_direction_to_deg"] = 213.0  # the propellers' inflow comes from ahead
+    data["dp"]["reference"] |= {"turn_max_deg_s": 10.0, "turn_accel_max_deg_s2": 10.0}
+    data["dp"]["setpoint"]["heading_deg"] = 0.3
+    data["dp"]["setpoints"][0]["heading_deg"] = 0.5
+    data["events"][1]["share"] = 0.0
+    data["events"].append({"label": "off", "at_s": 0.6, "event": "dp_off"})
+    for thruster in data["vessel"]["thrusters"]:
+        failed = {"label": "lost", "at_s": 0.7, "event": "thruster_fault", "which": thruster["name"], "fault": "failed"}
+        data["events"].append(failed)
+    return data
+
+
 def filtered():
     """The Kalman filter, a heading that follows the weather, thrusters that turn fast."""
     data = busy()

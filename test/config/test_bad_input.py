@@ -63,6 +63,47 @@ OVERRIDES = {
         "crane.initial_joints is [1.0, 2.0], expected 4 values, one per joint (slew, boom, knuckle, telescope)",
     ),
     "joints in another order": ("crane.links.0.joint=turn", "expected the joints slew, boom, knuckle, telescope"),
+    "unit clash of sensors": ("dp.sensors.gyro.noise_std_rad=0.1", "unit clash: this setting is noise_std_deg"),
+    "no such observer": ("dp.observer.kind=kalman", "kind is 'kalman', expected 'passive', 'ekf' or 'none'"),
+    "no such thruster": (
+        "events=[{label: a, at_s: 1.0, event: thruster_fault, which: rudder, fault: failed}]",
+        "events[0].which is 'rudder', expected one of azimuth_port, azimuth_starboard, bow_tunnel with the event "
+        "thruster_fault",
+    ),
+    "no such sensor": (
+        "events=[{label: a, at_s: 1.0, event: sensor_fault, which: radar, fault: frozen}]",
+        "events[0].which is 'radar', expected one of position, gyro, mru, wind with the event sensor_fault",
+    ),
+    "thruster's fault of a sensor": (
+        "events=[{label: a, at_s: 1.0, event: sensor_fault, which: gyro, fault: runaway}]",
+        "events[0].fault is 'runaway', expected one of none, drop_out, frozen with the event sensor_fault",
+    ),
+    "sensor's fault of a thruster": (
+        "events=[{label: a, at_s: 1.0, event: thruster_fault, which: bow_tunnel, fault: drop_out}]",
+        "events[0].fault is 'drop_out', expected one of none, failed, frozen, limited, runaway with the event",
+    ),
+    "limit without a share": (
+        "events=[{label: a, at_s: 1.0, event: thruster_fault, which: bow_tunnel, fault: limited}]",
+        "events[0].share is None, expected a share with thruster_fault",
+    ),
+    "power limit without a share": ("events=[{label: a, at_s: 1.0, event: power_limit}]", "expected a share with"),
+    "share of a failed thruster": (
+        "events=[{label: a, at_s: 1.0, event: thruster_fault, which: bow_tunnel, fault: failed, share: 0.5}]",
+        "events[0].share is 0.5, expected none with thruster_fault",
+    ),
+    "thruster of a switch": (
+        "events=[{label: a, at_s: 1.0, event: dp_off, which: bow_tunnel}]",
+        "events[0].which is 'bow_tunnel', expected none with the event dp_off",
+    ),
+    "share above one": (
+        "events=[{label: a, at_s: 1.0, event: power_limit, share: 1.5}]",
+        "events[0].share is 1.5, expected less than or equal to 1",
+    ),
+    "sensor off DP's grid": (
+        "dp.sensors.position.period_ms=250.0",
+        "dp.sensors.position.period_ms is 250.0, expected a whole multiple of dp.period_ms = 100",
+    ),
+    "sensor faster than DP": ("dp.sensors.gyro.period_ms=50.0", "expected a whole multiple of dp.period_ms = 100"),
     "wire beyond the drum": (
         "winch.initial_length_m=200.0",
         "winch.initial_length_m is 200.0, expected a length within the winch's limits, 0.2 to 100",

@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from busy_scenario import at_ends, busy, filtered, flow_along_row, look, put, slow, weak
+from busy_scenario import at_ends, busy, filtered, flow_along_row, hungry, look, put, slow, weak
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -19,7 +19,8 @@ WITHOUT_EFFECT_ON_PHYSICS = {
     "recording.chunk_kib": "layout of the bag",
     "environment.current_profile.0.0": "the surface, refused elsewhere",
     "dp.settled_after_s": "from when the summary judges position",
-    "vessel.thrusters.2.position_m.1": "a tunnel thruster pushes along this lever",
+    "vessel.thrusters.2.azimuth_rate_max_deg_s": "a tunnel thruster does not turn",
+    "vessel.thrusters.2.azimuth_lag_s": "the same",
 }
 TABLES = (("vessel", "hull", "current_table"), ("vessel", "wind_areas", "table"))
 
@@ -49,9 +50,9 @@ def small_changes(value, path):
     if isinstance(value, int):
         return [value + 1]
     if path[-1] in ("duration_s", "at_s", "from_s", "to_s", "enabled_at_s"):
-        return [value + 0.02]
+        return [value + 0.02, value + 0.04]
     if path[-1] in ("macro_step_ms", "telemetry_period_ms", "period_ms"):
-        return [value * 1.25, value * 1.2, value * 2.0]
+        return [value * 1.25, value * 1.2, value * 2.0, value * 0.5]
     step = 0.01 * abs(value) or 1e-3
     return [value + step, value - step]
 
@@ -86,11 +87,12 @@ def is_row_direction(path):
 
 
 PATHS = list(numbers(busy()))
+STAGES = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered(), "hungry": hungry()}
+STAGES |= {"long": at_ends(1), "short": at_ends(-1)}
 
 
 def test_every_number_changes_the_run_or_is_listed():
-    stages = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered()}
-    stages |= {"long": at_ends(1), "short": at_ends(-1)}
+    stages = STAGES
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):
@@ -119,6 +121,13 @@ def test_kind_of_thruster_changes_the_run():
 @pytest.mark.parametrize(
     ("path", "value"),
     [
+        (("dp", "observer", "kind"), "ekf"),
+        (("dp", "observer", "kind"), "none"),
+        (("dp", "observer", "adaptive"), False),
+        (("dp", "sensors", "perfect"), True),
+        (("dp", "reference", "together"), True),
+        (("dp", "allocation", "method"), "pseudo_inverse"),
+        (("dp", "weathervane", "enabled"), True),
         (("coupling",), "in_turn"),
         (("environment", "wind_gusts"), "harris"),
         (("environment", "waves", "first_order"), False),
@@ -131,6 +140,31 @@ def test_kind_of_thruster_changes_the_run():
 def test_a_choice_changes_the_run(path, value):
     data = busy()
     assert digest(changed(data, path, value)) not in (None, digest(data))
+
+
+def test_what_saturated_thrusters_keep_changes_the_run():
+    data = slow()
+    assert digest(changed(data, ("dp", "allocation", "priority"), "position")) not in (None, digest(data))
+
+
+@pytest.mark.parametrize(
+    "happens",
+    [
+        {"event": "thruster_fault", "which": "azimuth_port", "fault": "failed"},
+        {"event": "thruster_fault", "which": "azimuth_port", "fault": "frozen"},
+        {"event": "thruster_fault", "which": "azimuth_port", "fault": "runaway"},
+        {"event": "sensor_fault", "which": "gyro", "fault": "drop_out"},
+        {"event": "sensor_fault", "which": "gyro", "fault": "frozen"},
+        {"event": "sensor_fault", "which": "mru", "fault": "drop_out"},
+        {"event": "sensor_fault", "which": "wind", "fault": "frozen"},
+        {"event": "dp_off"},
+    ],
+    ids=lambda keys: " ".join(keys.values()),
+)
+def test_an_event_changes_the_run(happens):
+    data = busy()
+    events = [*data["events"], {"label": "more", "at_s": 0.2, **happens}]
+    assert digest(changed(data, ("events",), events)) not in (None, digest(data))
 
 
 def test_there_are_several_hundred_numbers():
