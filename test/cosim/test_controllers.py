@@ -27,7 +27,7 @@ from shipcrane_twin.cosim.controllers import (
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS, SCHEMES
 from shipcrane_twin.cosim.inline import InlineRun
 from shipcrane_twin.cosim.pacing import Lockstep
-from shipcrane_twin.cosim.subsystems.anti_sway import anti_sway_params
+from shipcrane_twin.cosim.subsystems.anti_sway import AntiSway, anti_sway_params
 from shipcrane_twin.cosim.topics import TOPICS
 from shipcrane_twin.physics.crane_chain import tip_state
 
@@ -101,6 +101,18 @@ def test_the_boom_moves_the_tip_as_the_controller_counts_on():
         expected = -constants.boom_sign * (tip_b[2] - constants.pivot_height)
         assert np.hypot(*velocity_b[:2]) == pytest.approx(abs(expected), abs=1e-9)
         assert velocity_b[:2] @ outward == pytest.approx(expected, rel=0.03)  # the boom's plane misses the slew axis
+
+
+def test_anti_sway_hears_operations_and_operator_at_the_start_of_the_step_it_speaks_for():
+    scenario = load_scenario("anti_sway", ["controllers.0.damping_ratio=0.0", "operations.0.from_s=0.04"])
+    run = InlineRun(replace(scenario, controllers=()))
+    next(run.steps())
+    controller = AntiSway(scenario)
+    said = [controller.start(), *(controller.step(k, run.latest) for k in (1, 2))]
+    assert controller.commands.say(["slew", "winch"], [0.03, 0.2]) is None
+    said.append(controller.step(3, run.latest))
+    slew = [float(out["/anti_sway/joint_command"][0]) for out in said]
+    np.testing.assert_allclose(slew, [0.0, 0.0, -0.02, 0.015], atol=1e-12)  # half now, half a swing later
 
 
 def test_a_run_without_controllers_is_the_chain_alone():
