@@ -144,6 +144,7 @@ def payload_step(
     tip, stage_state, total = np.empty(6), np.empty(6), np.empty(6)
     force, impulse = np.zeros(3), np.zeros(3)
     tension_max, slid, slip = 0.0, 0.0, state[SPEED] - told_prev
+    told_accel = (told_next - told_prev) / step_s
     drum_holds = hold.pull == np.inf and hold.leak == 0.0 and slip == 0.0
 
     for micro in range(count):
@@ -169,7 +170,7 @@ def payload_step(
                     # the least mass that this step resolves: by the spring's phase and by the dashpot's rate
                     dashpot = loss * stiffness * stretch_static
                     light = max(stiffness * (h / wire.phase_max) ** 2, dashpot * h)
-                    slip_next = drum_slip(hold, slip, rate, length, tension, light, h)
+                    slip_next = drum_slip(hold, slip, told_accel, rate, length, tension, light, h)
             reach = h if stage == 2 else 0.5 * h
             for i in range(3):
                 velocity = stage_state[3 + i]

@@ -225,7 +225,14 @@ def line_pull(tension: float, pay_out_rate: float, sheave_friction: float) -> fl
 
 @njit(cache=True)
 def drum_slip(
-    hold: Hold, slip: float, rate: float, length: float, tension: float, mass_min: float, step_s: float
+    hold: Hold,
+    slip: float,
+    told_accel: float,
+    rate: float,
+    length: float,
+    tension: float,
+    mass_min: float,
+    step_s: float,
 ) -> float:
     """Return by how much the drum runs faster than it is told [m/s] after a micro step.
 
@@ -234,6 +241,8 @@ def drum_slip(
     hold : Hold
     slip : float
         At the step's start [m/s].
+    told_accel : float
+        Of the speed told to the drum [m/s2].
     rate, length, tension : float
         Pay-out rate [m/s], paid-out length [m] and tension at the tip [N] at the step's start.
     mass_min : float
@@ -243,11 +252,12 @@ def drum_slip(
 
     Notes
     -----
-    Motor and brake hold like dry friction: no slip below ``hold.pull``, beyond it ``m dv/dt = pull - hold.pull``.
-    A leak is a dashpot, solved implicitly.
+    Motor and brake hold like dry friction: as long as pull and inertia of the turning parts together stay below
+    ``hold.pull`` there is no slip, beyond it ``m dv/dt = pull - hold.pull`` for the whole speed v. A leak is a
+    dashpot, solved implicitly.
     """
-    pulled = line_pull(tension, rate, hold.sheave_friction)
     mass = max(hold.mass, mass_min)
+    pulled = line_pull(tension, rate, hold.sheave_friction) - mass * told_accel
     if hold.leak > 0.0:
         slip = (slip + step_s * pulled / mass) / (1.0 + step_s / (mass * hold.leak))
     elif slip < 0.0:
