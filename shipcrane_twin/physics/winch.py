@@ -220,6 +220,8 @@ def winch_step(
 @njit(cache=True)
 def line_pull(tension: float, pay_out_rate: float, sheave_friction: float) -> float:
     """Return the pull at the drum [N] for a tension at the tip, with the sheaves' friction against the running."""
+    if sheave_friction == 0.0:
+        return tension
     return tension * (1.0 - sheave_friction * np.tanh(pay_out_rate / SHEAVE_SPEED))
 
 

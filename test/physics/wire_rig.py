@@ -6,7 +6,7 @@ from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.cosim.build import winch_params, wire_params
 from shipcrane_twin.physics.payload import hanging_state, payload_step
 from shipcrane_twin.physics.winch import POWERED, Hold, winch_at_rest, winch_step
-from shipcrane_twin.physics.wire import wire_stiffness
+from shipcrane_twin.physics.wire import STEP_MIN, wire_stiffness
 
 SCENARIO = load_scenario("case2")
 WIRE = wire_params(SCENARIO)
@@ -62,5 +62,6 @@ def energies(states, wire=WIRE):
     mass, length = states[:, 8], states[:, 6]
     kinetic = 0.5 * mass * np.sum(states[:, 3:6] ** 2, axis=1)
     stretch = np.maximum(0.0, np.linalg.norm(states[:, :3] - FIXED[:3], axis=1) - length)
-    elastic = 0.5 * stiffness_at(length, wire) * stretch**2
+    stiffness = np.minimum(stiffness_at(length, wire), mass * (wire.phase_max / STEP_MIN) ** 2)
+    elastic = 0.5 * stiffness * stretch**2
     return kinetic, kinetic + elastic + mass * wire.gravity * (states[:, 2] - FIXED[2])
