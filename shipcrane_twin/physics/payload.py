@@ -103,6 +103,12 @@ def micro_steps(wire: WireParams, length: float, mass: float, step_s: float) -> 
 
 
 @njit(cache=True)
+def least_mass(wire: WireParams, stiffness: float, dashpot: float, step_s: float) -> float:
+    """Return the mass [kg] whose vibration on a spring [N/m] and dashpot [N s/m] a micro step [s] still resolves."""
+    return max(stiffness * (step_s / wire.phase_max) ** 2, dashpot * step_s)
+
+
+@njit(cache=True)
 def payload_step(
     wire: WireParams,
     hold: Hold,
@@ -167,9 +173,7 @@ def payload_step(
                 note_tension(record, tension)
                 slip_next = slip
                 if not drum_holds:
-                    # the least mass that this step resolves: by the spring's phase and by the dashpot's rate
-                    dashpot = loss * stiffness * stretch_static
-                    light = max(stiffness * (h / wire.phase_max) ** 2, dashpot * h)
+                    light = least_mass(wire, stiffness, loss * stiffness * stretch_static, h)
                     slip_next = drum_slip(hold, slip, told_accel, rate, length, tension, light, h)
             reach = h if stage == 2 else 0.5 * h
             for i in range(3):
