@@ -16,7 +16,7 @@ PLATE_ADDED_MASS = np.array([0.579, 0.642, 0.690, 0.757, 0.801, 0.830, 0.871, 0.
 """Longer over shorter side of a rectangular plate, and its added mass across over that of the cylinder of water around
 its shorter side (DNV-RP-N103, appendix A, table A-2; 1 for an endless plate)."""
 
-ENTRY_SHARE = 0.02
+ENTRY_SHARE = 0.01
 """Depth over which slamming and drag come in, so that nothing jumps at the surface, over the height of the box."""
 
 
