@@ -1,11 +1,11 @@
 """Settings of the wire, the winch and the load."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
 from shipcrane_twin.config.crane import NotNegative, Positive
-from shipcrane_twin.config.settings import Number, Whole, settings
+from shipcrane_twin.config.settings import Number, Text, Vector3, Whole, settings
 
 
 @settings
@@ -57,8 +57,106 @@ class WinchConfig:
 
 
 @settings
+class SlingConfig:
+    """Two legs from the hook to two lugs on the middle line of the box, ``lug_height_m`` above its middle."""
+
+    lug_distance_m: Positive
+    lug_height_m: NotNegative
+    leg_length_m: Positive
+    leg_stiffness_n_m: Positive
+
+    def __post_init__(self) -> None:
+        """Require legs that reach from lug to lug."""
+        if 2.0 * self.leg_length_m <= self.lug_distance_m:
+            raise ValueError(
+                f"leg_length_m above half of lug_distance_m = {self.lug_distance_m:g}; lengthen the legs"
+            )
+
+
+@settings
+class ContactConfig:
+    """How the corners of the box touch: stiffness of one corner, restitution (see `physics.contact`), dry friction."""
+
+    stiffness_n_m: Positive
+    loss_s_m: NotNegative
+    friction: Annotated[Number, Ge(0), Le(2)]
+
+
+@settings
+class PlaneConfig:
+    """A level rectangle on which the box may lie.
+
+    ``centre_m`` is from aft perpendicular, centre line and baseline on the ship, else east, north and up from still
+    water; ``heading_deg`` is where its length points, clockwise from the bow on the ship, else from north. A supply
+    deck heaves: ``amplitude sin(2 pi t / period + phase)``.
+    """
+
+    label: Text
+    on: Literal["ship", "ground", "supply"]
+    centre_m: Vector3
+    length_m: Positive
+    breadth_m: Positive
+    heading_deg: Number
+    heave_amplitude_m: Positive | None = None
+    heave_period_s: Positive | None = None
+    heave_phase_deg: Number | None = None
+
+    def __post_init__(self) -> None:
+        """Require the heave of a supply deck and of nothing else."""
+        for name in ("heave_amplitude_m", "heave_period_s", "heave_phase_deg"):
+            if (getattr(self, name) is not None) != (self.on == "supply"):
+                raise ValueError(f"{name} for a plane on a supply ship and for no other")
+
+
+@settings
+class BoxConfig:
+    """The load as a rigid box of even density; ``cog_m`` is its CoG from its middle along length, breadth and height.
+
+    ``heading_deg`` is where its length points at the start. ``displaced_share`` of its volume displaces water,
+    ``perforation`` is the open share of its faces. ``rests_on`` is the label of the plane on which it lies at the start.
+    """
+
+    length_m: Positive
+    breadth_m: Positive
+    height_m: Positive
+    cog_m: Vector3
+    heading_deg: Number
+    displaced_share: Annotated[Number, Gt(0), Le(1)]
+    perforation: Annotated[Number, Ge(0), Le(0.5)]
+    air_drag_coefficient: NotNegative
+    drag_coefficient: NotNegative
+    slamming_coefficient: Positive
+    sling: SlingConfig
+    contact: ContactConfig
+    planes: tuple[PlaneConfig, ...] = ()
+    rests_on: Text | None = None
+
+    def __post_init__(self) -> None:
+        """Require planes of different names, and one to rest on."""
+        labels = [plane.label for plane in self.planes]
+        if len(set(labels)) < len(labels):
+            raise ValueError(f"planes with different labels, found {', '.join(labels)}")
+        if self.rests_on is not None and self.rests_on not in labels:
+            raise ValueError(f"rests_on among the labels of planes ({', '.join(labels) or 'none'})")
+
+
+@settings
 class PayloadConfig:
     """What hangs on the wire: ``mass_kg`` with the hook, ``hook_mass_kg`` after the load is released."""
 
     mass_kg: Positive
     hook_mass_kg: Positive
+    shape: Literal["point", "box"]
+    box: BoxConfig | None = None
+
+    def __post_init__(self) -> None:
+        """Require a box for the shape box and for no other."""
+        if (self.box is not None) != (self.shape == "box"):
+            raise ValueError("the group box with shape: box, and only then")
+        if self.shape == "box" and self.hook_mass_kg >= self.mass_kg:
+            raise ValueError(f"hook_mass_kg below mass_kg = {self.mass_kg:g}, which is hook and box together")
+
+
+def on_ship(payload: PayloadConfig) -> bool:
+    """Return whether the load may touch the ship, so that its motion has to be known."""
+    return payload.box is not None and any(plane.on == "ship" for plane in payload.box.planes)

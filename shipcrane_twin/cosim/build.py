@@ -238,9 +238,11 @@ def wire_params(scenario: Scenario) -> WireParams:
 
 
 def tip_weight(scenario: Scenario) -> float:
-    """Return what hangs on the tip at the start [N]."""
-    wire = scenario.wire.mass_kg_m * scenario.winch.initial_length_m
-    return scenario.constants.gravity_m_s2 * (scenario.payload.mass_kg + wire)
+    """Return what hangs on the tip at the start [N]: the load, unless it rests on something, its hook and the wire."""
+    payload = scenario.payload
+    resting = payload.box is not None and payload.box.rests_on is not None
+    mass = payload.hook_mass_kg if resting else payload.mass_kg
+    return scenario.constants.gravity_m_s2 * (mass + scenario.wire.mass_kg_m * scenario.winch.initial_length_m)
 
 
 def winch_params(scenario: Scenario) -> WinchParams:

@@ -81,6 +81,12 @@ def carried(wire: WireParams, length: float, mass: float) -> tuple[float, float]
 
 
 @njit(cache=True)
+def wire_on_tip(wire: WireParams, length: float) -> float:
+    """Return the wire's weight [N] that does not hang at the load's end, see `carried`."""
+    return 0.5 * wire.mass_per_length * length * wire.gravity
+
+
+@njit(cache=True)
 def hanging_wire(wire: WireParams, length: float, mass: float, weight: float) -> tuple[float, float, float]:
     """Return stiffness [N/m], loss factor [s/m] and static stretch [m] with this inertia [kg] and weight [N]."""
     stiffness = resolved_stiffness(
@@ -174,7 +180,8 @@ def payload_step(
                 slip_next = slip
                 if not drum_holds:
                     light = least_mass(wire, stiffness, loss * stiffness * stretch_static, h)
-                    slip_next = drum_slip(hold, slip, told_accel, rate, length, tension, light, h)
+                    drawn = tension + wire_on_tip(wire, length)
+                    slip_next = drum_slip(hold, slip, told_accel, rate, length, drawn, light, h)
             reach = h if stage == 2 else 0.5 * h
             for i in range(3):
                 velocity = stage_state[3 + i]
@@ -191,7 +198,7 @@ def payload_step(
 
     new[LENGTH] = state[LENGTH] + 0.5 * (told_prev + told_next) * step_s + slid
     new[SPEED] = told_next + slip
-    impulse[2] -= 0.5 * wire.mass_per_length * state[LENGTH] * wire.gravity * step_s
+    impulse[2] -= wire_on_tip(wire, state[LENGTH]) * step_s
     return new, impulse / step_s, tension_max
 
 

@@ -7,7 +7,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import matrix_from_quat
-from shipcrane_twin.physics.payload import WireParams, least_mass, place_tip
+from shipcrane_twin.physics.payload import WireParams, least_mass, place_tip, wire_on_tip
 from shipcrane_twin.physics.rigid_load import (
     APART,
     IMPACT,
@@ -158,7 +158,8 @@ def rigid_step(
                 note_tension(snaps, tension)
                 note_contact(landing, normal, approach, h)
                 light = least_mass(wire, springs.stiffness, springs.loss * springs.stiffness * springs.stretch, h)
-                slip_next = drum_slip(hold, slip, told_accel, told + slip, length, tension, light, h)
+                drawn = tension + wire_on_tip(wire, length)
+                slip_next = drum_slip(hold, slip, told_accel, told + slip, length, drawn, light, h)
             reach = h if stage == 2 else 0.5 * h
             for i in range(3):
                 impulse[i] -= weight * h * work.part_w[i]
@@ -175,7 +176,7 @@ def rigid_step(
 
     new[LENGTH] = state[LENGTH] + 0.5 * (told_prev + told_next) * step_s + slid
     new[SPEED] = told_next + slip
-    impulse[2] -= 0.5 * wire.mass_per_length * state[LENGTH] * wire.gravity * step_s
+    impulse[2] -= wire_on_tip(wire, state[LENGTH]) * step_s
     return new, impulse / step_s, tension_max
 
 

@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from busy_scenario import at_ends, busy, flow_along_row, look, put, slow, weak
+from busy_scenario import at_ends, busy, flow_along_row, look, put, slow, weak, without_power
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -90,6 +90,7 @@ PATHS = list(numbers(busy()))
 
 def test_every_number_changes_the_run_or_is_listed():
     stages = {"busy": busy(), "weak": weak(), "slow": slow(), "long": at_ends(1), "short": at_ends(-1)}
+    stages |= {event: without_power(event) for event in ("winch_coasts", "winch_leaks")}
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):
