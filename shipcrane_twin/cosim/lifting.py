@@ -8,6 +8,7 @@ from shipcrane_twin.config.lifting import BoxConfig, PlaneConfig
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.cosim import weather
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.contact import STIFFNESS
 from shipcrane_twin.physics.frames import (
     cross,
     matrix_from_quat,
@@ -17,7 +18,7 @@ from shipcrane_twin.physics.frames import (
     yaw_from_heading,
 )
 from shipcrane_twin.physics.payload import WireParams
-from shipcrane_twin.physics.rigid_load import RigidParams, make_rigid
+from shipcrane_twin.physics.rigid_load import QUAT, TURNING, VELOCITY, RigidParams, make_rigid
 from shipcrane_twin.physics.rigid_step import slung_state
 from shipcrane_twin.physics.sea.current import current_at
 from shipcrane_twin.physics.sea.gusts import gust
@@ -144,19 +145,19 @@ class LoadWeather:
 def load_at_start(
     scenario: Scenario, box: BoxConfig, wire: WireParams, load: RigidParams, tip_w: Array, planes: Array
 ) -> Array:
-    """Return the state (32,) of the load at rest under the tip, hanging, or lying on the plane that it rests on."""
+    """Return the state (32,) of the load at rest under the tip, or lying on the plane that it rests on, moving with it."""
     rot = turned(yaw_from_heading(box.heading_deg))
-    place = np.zeros(3)
-    if box.rests_on is not None:
-        row = planes[[plane.label for plane in box.planes].index(box.rests_on)]
-        axes = row[6:15].reshape(3, 3)
-        ahead = axes.T @ rot[:, 0]
-        rot = axes @ turned(math.atan2(ahead[1], ahead[0]))
-        sink = 0.25 * load.mass * wire.gravity / load.planes[0, 3]
-        above = 0.5 * box.height_m - load.splash.centre[2] - sink
-        normal = axes[:, 2]
-        # the point of the plane right below the tip
-        drop = ((row[:3] - tip_w) @ normal) / normal[2]
-        place = tip_w + np.array([0.0, 0.0, drop]) + above * normal
-    lying = box.rests_on is not None
-    return slung_state(wire, load, tip_w, scenario.winch.initial_length_m, quat_from_matrix(rot), place, lying)
+    length, lying = scenario.winch.initial_length_m, box.rests_on is not None
+    if not lying:
+        return slung_state(wire, load, tip_w, length, quat_from_matrix(rot), np.zeros(3), lying)
+    row = planes[[plane.label for plane in box.planes].index(box.rests_on)]
+    axes = row[6:15].reshape(3, 3)
+    ahead, normal = axes.T @ rot[:, 0], axes[:, 2]
+    rot = axes @ turned(math.atan2(ahead[1], ahead[0]))
+    sink = 0.25 * load.mass * wire.gravity / load.planes[0, STIFFNESS]
+    below_tip = tip_w + np.array([0.0, 0.0, ((row[:3] - tip_w) @ normal) / normal[2]])
+    place = below_tip + (0.5 * box.height_m - load.splash.centre[2] - sink) * normal
+    state = slung_state(wire, load, tip_w, length, quat_from_matrix(rot), place, lying)
+    state[VELOCITY:QUAT] = row[3:6] + cross(row[15:18], place - row[:3])
+    state[TURNING : TURNING + 3] = rot.T @ row[15:18]
+    return state
