@@ -113,7 +113,7 @@ class BoxConfig:
     """The load as a rigid box of even density; ``cog_m`` is its CoG from its middle along length, breadth and height.
 
     ``heading_deg`` is where its length points at the start. ``displaced_share`` of its volume displaces water,
-    ``perforation`` is the open share of its faces. ``rests_on`` is the label of the plane on which it lies at the start.
+    ``perforation`` is the open share of its faces. ``rests_on`` is the label of the plane where it lies at the start.
     """
 
     length_m: Positive

@@ -145,11 +145,11 @@ class LoadWeather:
 def load_at_start(
     scenario: Scenario, box: BoxConfig, wire: WireParams, load: RigidParams, tip_w: Array, planes: Array
 ) -> Array:
-    """Return the state (32,) of the load at rest under the tip, or lying on the plane that it rests on, moving with it."""
+    """Return the state (32,) of the load at rest under the tip, or lying on its plane and moving with it."""
     rot = turned(yaw_from_heading(box.heading_deg))
-    length, lying = scenario.winch.initial_length_m, box.rests_on is not None
-    if not lying:
-        return slung_state(wire, load, tip_w, length, quat_from_matrix(rot), np.zeros(3), lying)
+    length = scenario.winch.initial_length_m
+    if box.rests_on is None:
+        return slung_state(wire, load, tip_w, length, quat_from_matrix(rot), np.zeros(3), False)
     row = planes[[plane.label for plane in box.planes].index(box.rests_on)]
     axes = row[6:15].reshape(3, 3)
     ahead, normal = axes.T @ rot[:, 0], axes[:, 2]
@@ -157,7 +157,7 @@ def load_at_start(
     sink = 0.25 * load.mass * wire.gravity / load.planes[0, STIFFNESS]
     below_tip = tip_w + np.array([0.0, 0.0, ((row[:3] - tip_w) @ normal) / normal[2]])
     place = below_tip + (0.5 * box.height_m - load.splash.centre[2] - sink) * normal
-    state = slung_state(wire, load, tip_w, length, quat_from_matrix(rot), place, lying)
+    state = slung_state(wire, load, tip_w, length, quat_from_matrix(rot), place, True)
     state[VELOCITY:QUAT] = row[3:6] + cross(row[15:18], place - row[:3])
     state[TURNING : TURNING + 3] = rot.T @ row[15:18]
     return state

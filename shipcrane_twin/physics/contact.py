@@ -10,7 +10,7 @@ from numba import njit
 from shipcrane_twin.physics.arrays import Array
 
 HALF_LENGTH, HALF_BREADTH, THICKNESS, STIFFNESS, LOSS, FRICTION = range(6)
-"""Columns of a rectangle's constants: [m], [m], depth below which it is no longer met [m], per corner [N/m], [s/m], -."""
+"""Columns of a rectangle's constants: [m], [m], depth at which it is no longer met [m], per corner [N/m], [s/m], -."""
 
 CREEP_SPEED = 0.01
 """Sliding speed at which friction has reached 71 % of its full force [m/s]."""

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.box_wind import box_wind
 from shipcrane_twin.physics.contact import STIFFNESS, contact_load
 from shipcrane_twin.physics.frames import matrix_from_quat, quat_rate
 from shipcrane_twin.physics.payload import WireParams, carried, hanging_wire, least_mass
@@ -168,9 +169,8 @@ def rigid_micro_steps(wire: WireParams, load: RigidParams, length: float, slung:
     dashpots = springs.stiffness * springs.loss * springs.stretch + legs * springs.leg_loss * springs.leg_stretch
     hook = np.sqrt((springs.stiffness + legs) / springs.hook_inertia) / wire.phase_max
     damper = dashpots / springs.hook_inertia
-    return int(
-        np.ceil(step_s * max(1.0 / step_s, hook, damper, load.rate_max / wire.phase_max, 1.0 / wire.micro_step_max) - 1e-9)
-    )
+    fastest = max(1.0 / step_s, hook, damper, load.rate_max / wire.phase_max, 1.0 / wire.micro_step_max)
+    return int(np.ceil(step_s * fastest - 1e-9))
 
 
 class Work(NamedTuple):
@@ -268,7 +268,8 @@ def rigid_rate(
             moment[2] += ax * part[1] - ay * part[0]
 
     submerged = splash_load(load.splash, place, rot, velocity, turning, water, force, moment, work.added_mass)
-    blow(load, 1.0 - submerged, rot, velocity, wind, force, moment)
+    dry = load.air_drag * (1.0 - submerged)
+    box_wind(load.splash.size, load.splash.centre, dry, rot, velocity, wind, force, moment)
     normal, approach = contact_load(
         planes, load.planes, load.corners, load.radius, place, rot, velocity, turning, force, moment
     )
@@ -292,32 +293,3 @@ def rigid_rate(
         gyro = (load.inertia[v] - load.inertia[u]) * motion[TURNING + u] * motion[TURNING + v]
         rate[TURNING + k] = (about - gyro) / load.inertia[k]
     return tension, normal, approach
-
-
-@njit(cache=True)
-def blow(
-    load: RigidParams, dry: float, rot: Array, velocity: Array, wind: Array, force: Array, moment: Array
-) -> None:
-    """Add the wind's load on the dry part of the box, at its middle, along the wind over it.
-
-    ``rho C_D A u^2 / 2`` with the area A of the box as the wind sees it (DNV-RP-C205 section 5.3).
-    """
-    ux, uy, uz = wind[0] - velocity[0], wind[1] - velocity[1], wind[2] - velocity[2]
-    speed = np.sqrt(ux * ux + uy * uy + uz * uz)
-    if speed == 0.0:
-        return
-    size, centre = load.splash.size, load.splash.centre
-    seen = 0.0  # area times speed
-    for k in range(3):
-        along = rot[0, k] * ux + rot[1, k] * uy + rot[2, k] * uz
-        seen += abs(along) * size[(k + 1) % 3] * size[(k + 2) % 3]
-    push = load.air_drag * dry * seen
-    ax = rot[0, 0] * centre[0] + rot[0, 1] * centre[1] + rot[0, 2] * centre[2]
-    ay = rot[1, 0] * centre[0] + rot[1, 1] * centre[1] + rot[1, 2] * centre[2]
-    az = rot[2, 0] * centre[0] + rot[2, 1] * centre[1] + rot[2, 2] * centre[2]
-    force[0] += push * ux
-    force[1] += push * uy
-    force[2] += push * uz
-    moment[0] += push * (ay * uz - az * uy)
-    moment[1] += push * (az * ux - ax * uz)
-    moment[2] += push * (ax * uy - ay * ux)

@@ -76,8 +76,8 @@ def body_added_mass(side: float, other_side: float, depth: float, density: float
 
     Notes
     -----
-    DNV-RP-N103 section 4.6.3: ``(1 + sqrt((1 - l^2) / (2 (1 + l^2)))) A_plate`` with ``l = sqrt(A) / (h + sqrt(A))``, and
-    the reduction by perforation p in per cent: none up to 5, ``0.7 + 0.3 cos(pi (p - 5) / 34)`` up to 34, then
+    DNV-RP-N103 section 4.6.3: ``(1 + sqrt((1 - l^2) / (2 (1 + l^2)))) A_plate`` with ``l = sqrt(A) / (h + sqrt(A))``,
+    and the reduction by perforation p in per cent: none up to 5, ``0.7 + 0.3 cos(pi (p - 5) / 34)`` up to 34, then
     ``exp((10 - p) / 28)``.
     """
     width = np.sqrt(side * other_side)
@@ -126,6 +126,53 @@ def entered(depth: float, ease: float, rate: float, full: float) -> tuple[float,
 
 
 @njit(cache=True)
+def column_load(
+    box: SplashParams,
+    rot: Array,
+    upright: float,
+    below: float,
+    flow: Array,
+    water: Array,
+    push: Array,
+    added_mass: Array,
+) -> None:
+    """Fill the load (3,) on one of the four columns along the axes of the box [N], and add its added mass (3,) [kg].
+
+    Parameters
+    ----------
+    box : SplashParams
+    rot : float64, shape (3, 3)
+        Box to world.
+    upright : float
+        1, or -1 when the box is upside down.
+    below : float
+        Depth of the column's lower end, along the column [m].
+    flow : float64, shape (3,)
+        Velocity of the water relative to the column, world [m/s].
+    water : float64, shape (7,)
+        See `splash_load`.
+    push, added_mass : float64, shape (3,)
+    """
+    tall = box.size[2]
+    area, depth = 0.25 * box.size[0] * box.size[1], min(below, tall)
+    half_rho, ease = 0.5 * box.density, ENTRY_SHARE * tall
+    mass, rate = entered(below, ease, half_rho * area * box.slamming, 0.25 * box.added_mass[2])
+    for i in range(3):
+        along = rot[0, i] * flow[0] + rot[1, i] * flow[1] + rot[2, i] * flow[2]
+        lifting = rot[0, i] * water[4] + rot[1, i] * water[5] + rot[2, i] * water[6]
+        if i == 2:
+            face, added = area * min(1.0, below / ease), mass
+        else:
+            face = 0.25 * box.size[1 - i] * depth
+            added = 0.25 * box.added_mass[i] * depth / tall
+        push[i] = half_rho * box.drag * face * abs(along) * along
+        push[i] += (box.density * box.displaced * area * depth + added) * lifting
+        added_mass[i] += added
+    if upright * along > 0.0:  # water enters from below
+        push[2] += upright * rate * along * along
+
+
+@njit(cache=True)
 def splash_load(
     box: SplashParams,
     place: Array,
@@ -170,10 +217,7 @@ def splash_load(
         return 0.0
     upright = 1.0 if rot[2, 2] >= 0.0 else -1.0
     slope = max(0.5, abs(rot[2, 2]))
-    ease = ENTRY_SHARE * tall
     area = 0.25 * box.size[0] * box.size[1]
-    full = 0.25 * box.added_mass[2]
-    half_rho = 0.5 * box.density
     arm, flow, push, load = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     total_share = 0.0
     for column in range(4):
@@ -184,35 +228,17 @@ def splash_load(
         if below <= 0.0:
             continue
         depth = min(below, tall)
-        share = depth / tall
-        total_share += 0.25 * share
+        total_share += 0.25 * depth / tall
         z = box.centre[2] + upright * 0.5 * (depth - tall)
         for i in range(3):
             arm[i] = rot[i, 0] * x + rot[i, 1] * y + rot[i, 2] * z
         flow[0] = water[1] - velocity[0] - (turning[1] * arm[2] - turning[2] * arm[1])
         flow[1] = water[2] - velocity[1] - (turning[2] * arm[0] - turning[0] * arm[2])
         flow[2] = water[3] - velocity[2] - (turning[0] * arm[1] - turning[1] * arm[0])
-        bottom, rate = entered(below, ease, half_rho * area * box.slamming, full)
-        wet = min(1.0, below / ease)
-        volume = box.displaced * area * depth
-        added = (0.25 * box.added_mass[0] * share, 0.25 * box.added_mass[1] * share, bottom)
-        for i in range(3):
-            along = rot[0, i] * flow[0] + rot[1, i] * flow[1] + rot[2, i] * flow[2]
-            lifting = rot[0, i] * water[4] + rot[1, i] * water[5] + rot[2, i] * water[6]
-            if i == 0:
-                face = 0.25 * box.size[1] * depth
-            elif i == 1:
-                face = 0.25 * box.size[0] * depth
-            else:
-                face = area * wet
-            push[i] = half_rho * box.drag * face * abs(along) * along
-            push[i] += (box.density * volume + added[i]) * lifting
-            if i == 2 and upright * along > 0.0:
-                push[i] += upright * rate * along * along
-            added_mass[i] += added[i]
+        column_load(box, rot, upright, below, flow, water, push, added_mass)
         for i in range(3):
             load[i] = rot[i, 0] * push[0] + rot[i, 1] * push[1] + rot[i, 2] * push[2]
-        load[2] += box.density * box.gravity * volume
+        load[2] += box.density * box.gravity * box.displaced * area * depth
         for i in range(3):
             force[i] += load[i]
         moment[0] += arm[1] * load[2] - arm[2] * load[1]

@@ -17,8 +17,7 @@ UNDAMPED = WIRE._replace(damping_ratio=0.0)
 
 
 def splash(size=SIZE, centre=(0.0, 0.0, 0.0), **changes):
-    l, b, h = size
-    added = [body_added_mass(b, h, l, RHO, 0.0), body_added_mass(l, h, b, RHO, 0.0), body_added_mass(l, b, h, RHO, 0.0)]
+    added = [body_added_mass(size[k - 2], size[k - 1], size[k], RHO, 0.0) for k in range(3)]
     box = SplashParams(np.array(size, float), np.array(centre, float), 1.0, RHO, G, 1.2, 5.0, np.array(added))
     return box._replace(**changes)
 

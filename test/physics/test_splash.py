@@ -55,7 +55,8 @@ def test_buoyancy_is_the_weight_of_the_water_displaced(measured):
 def test_slamming_force_on_entry(measured):
     # C_s = 5, A = 12 m2, 0.8 m/s down into water that rises with 0.6 m/s: 60.3 kN
     water = np.array([0.3, 0.0, 0.0, 0.6, 0.0, 0.0, 0.0])
-    plain, slammed = (load_at(0.2, (0.0, 0.0, -0.8), water, box=splash(drag=0.0, slamming=c))[0][2] for c in (1e-9, 5.0))
+    boxes = [splash(drag=0.0, slamming=c) for c in (1e-9, 5.0)]
+    plain, slammed = (load_at(0.2, (0.0, 0.0, -0.8), water, box=box)[0][2] for box in boxes)
     measured("splash zone: slamming force", off(slammed - plain, 0.5 * 1025.0 * 5.0 * 12.0 * 1.4**2), 0.02)
     leaving = load_at(0.2, (0.0, 0.0, 0.8), box=splash(drag=0.0))[0][2]
     assert leaving == pytest.approx(load_at(0.2, box=splash(drag=0.0))[0][2])

@@ -176,7 +176,7 @@ def test_a_coasting_winch_lets_the_load_fall_against_drag_and_inertia(step_s, me
 
 def test_a_brake_that_falls_in_while_moving_stops_drum_and_load_as_its_torque_does():
     mass, radius = 700.0, radius_at(20.0)
-    states, memories, _ = pulled(0.5, mass, seconds=4.0, length=20.0)
+    states, _, _ = pulled(0.5, mass, seconds=4.0, length=20.0)
     assert states[-1, 7] == pytest.approx(0.5)
     stopped, _, _ = hoist(states[-1], 0.001, 400, 0.0, BRAKED, at_rest=winch_at_rest(WINCH, 0.001))
     assert stopped[0, 7] == pytest.approx(0.5)
