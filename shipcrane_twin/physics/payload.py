@@ -77,7 +77,7 @@ def carried(wire: WireParams, length: float, mass: float) -> tuple[float, float]
     inertia the tip has of the wire, up to two thirds of its mass, is left out, and so is sag.
     """
     own = wire.mass_per_length * length
-    return mass + own / 3.0, wire.gravity * (mass + 0.5 * own)
+    return mass + own * (1.0 / 3.0), wire.gravity * (mass + 0.5 * own)
 
 
 @njit(cache=True)
@@ -92,7 +92,7 @@ def hanging_wire(wire: WireParams, length: float, mass: float, weight: float) ->
     stiffness = resolved_stiffness(
         wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length), mass, wire.phase_max
     )
-    return stiffness, wire_loss(stiffness, mass, wire.damping_ratio, weight / mass), weight / stiffness
+    return stiffness, wire_loss(stiffness, mass, wire.damping_ratio, weight), weight / stiffness
 
 
 @njit(cache=True)

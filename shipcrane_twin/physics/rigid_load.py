@@ -153,7 +153,7 @@ def springs_at(wire: WireParams, load: RigidParams, length: float, slung: bool) 
     hung, pulled = (inertia + load.mass, weight + load.mass * wire.gravity) if slung else (inertia, weight)
     stiffness, loss, stretch = hanging_wire(wire, length, hung, pulled)
     leg_stretch = 0.5 * load.mass * wire.gravity / load.leg_stiffness
-    leg_loss = wire_loss(load.leg_stiffness, 0.5 * load.mass, wire.damping_ratio, wire.gravity)
+    leg_loss = wire_loss(load.leg_stiffness, 0.5 * load.mass, wire.damping_ratio, 0.5 * load.mass * wire.gravity)
     if slung:
         springs = stiffness + 2.0 * load.leg_stiffness
         dashpots = stiffness * loss * stretch + 2.0 * load.leg_stiffness * leg_loss * leg_stretch

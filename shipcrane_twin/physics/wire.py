@@ -62,12 +62,12 @@ def count_snap(record: Array) -> None:
 
 
 @njit(cache=True)
-def wire_loss(stiffness: float, mass: float, damping_ratio: float, gravity: float) -> float:
+def wire_loss(stiffness: float, mass: float, damping_ratio: float, weight: float) -> float:
     """Return the loss factor [s/m] that gives the hanging mass the damping ratio about its equilibrium.
 
-    At the static stretch ``m g / k`` the damping of `pull` equals ``2 zeta sqrt(k m)``.
+    At the static stretch, weight over stiffness, the damping of `pull` equals ``2 zeta sqrt(k m)``.
     """
-    return 2.0 * damping_ratio * np.sqrt(stiffness * mass) / (mass * gravity)
+    return 2.0 * damping_ratio * np.sqrt(stiffness * mass) / weight
 
 
 @njit(cache=True)
