@@ -67,7 +67,7 @@ OVERRIDES = {
         "winch.drum.wire_length_m=50.0",
         "winch.drum.wire_length_m is 50.0, expected at least winch.length_max_m = 100",
     ),
-    "shape without its group": ("payload.shape=box", "payload is {", "expected the group box with shape: box"),
+    "shape without its group": ("payload.shape=box", "expected the group box with shape: box, and only then"),
     "wire beyond the drum": (
         "winch.initial_length_m=200.0",
         "winch.initial_length_m is 200.0, expected a length within the winch's limits, 0.2 to 100",
