@@ -1,4 +1,4 @@
-"""Settings of the crane, its servos, the wire with its winch, and the load."""
+"""Settings of the crane and its servos."""
 
 from typing import Annotated, Literal
 
@@ -101,34 +101,3 @@ class CraneConfig:
     tip: TipConfig
     servo: ServoConfig
     initial_joints: Annotated[tuple[Number, ...], Len(1)]
-
-
-@settings
-class WireConfig:
-    """The hoisting wire."""
-
-    elastic_modulus_pa: Positive
-    diameter_m: Positive
-    fill_factor: Annotated[Number, Gt(0), Le(1)]
-    damping_ratio: Annotated[Number, Ge(0), Le(5)]
-    phase_max_rad: Annotated[Number, Gt(0), Le(1)]
-    micro_step_max_ms: Annotated[Number, Gt(0), Le(20)]
-
-
-@settings
-class WinchConfig:
-    """The winch."""
-
-    initial_length_m: Positive
-    length_min_m: Positive
-    length_max_m: Positive
-    speed_max_m_s: Positive
-    accel_max_m_s2: Positive
-
-
-@settings
-class PayloadConfig:
-    """What hangs on the wire: ``mass_kg`` with the hook, ``hook_mass_kg`` after the load is released."""
-
-    mass_kg: Positive
-    hook_mass_kg: Positive

@@ -6,16 +6,10 @@ from typing import Annotated, Literal
 from annotated_types import Ge, Gt, Le
 
 from shipcrane_twin.config.controllers import ControllerConfig, controller_problems
-from shipcrane_twin.config.crane import (
-    CraneConfig,
-    NotNegative,
-    PayloadConfig,
-    Positive,
-    WinchConfig,
-    WireConfig,
-)
+from shipcrane_twin.config.crane import CraneConfig, NotNegative, Positive
 from shipcrane_twin.config.dp import DpConfig
 from shipcrane_twin.config.environment import WAVE_KEYS, EnvironmentConfig
+from shipcrane_twin.config.lifting import PayloadConfig, WinchConfig, WireConfig
 from shipcrane_twin.config.settings import Number, Text, Whole, settings
 from shipcrane_twin.config.vessel import VesselConfig
 
@@ -70,7 +64,17 @@ class EventConfig:
 
     label: Text
     at_s: NotNegative
-    event: Literal["release_payload", "thruster_fault", "sensor_fault", "power_limit", "dp_on", "dp_off"]
+    event: Literal[
+        "release_payload",
+        "thruster_fault",
+        "sensor_fault",
+        "power_limit",
+        "dp_on",
+        "dp_off",
+        "winch_coasts",
+        "winch_brakes",
+        "winch_leaks",
+    ]
     which: Text | None = None
     fault: Literal["none", "failed", "frozen", "limited", "runaway", "drop_out"] | None = None
     share: Annotated[Number, Ge(0), Le(1)] | None = None
@@ -254,6 +258,10 @@ def winch_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     if not winch.length_min_m <= winch.initial_length_m <= winch.length_max_m:
         limits = f"{winch.length_min_m:g} to {winch.length_max_m:g}"
         found.append((["winch", "initial_length_m"], f"expected a length within the winch's limits, {limits}"))
+    if winch.drum.wire_length_m < winch.length_max_m:
+        found.append(
+            (["winch", "drum", "wire_length_m"], f"expected at least winch.length_max_m = {winch.length_max_m:g}")
+        )
     if payload.hook_mass_kg > payload.mass_kg:
         found.append(
             (["payload", "hook_mass_kg"], f"expected no more than payload.mass_kg = {payload.mass_kg:g}, a part of it")

@@ -23,6 +23,7 @@ from shipcrane_twin.physics.radiation import RadiationParams
 from shipcrane_twin.physics.slow_pose import follower
 from shipcrane_twin.physics.vessel import VesselParams
 from shipcrane_twin.physics.vessel_step import micro_steps
+from shipcrane_twin.physics.winch import WinchParams
 from shipcrane_twin.physics.wind import WindParams
 
 CROSS_FLOW_STRIPS = 12
@@ -187,18 +188,45 @@ def one_drive(drive: DriveConfig) -> LinearDrive | TriangleDrive:
 
 
 def wire_params(scenario: Scenario) -> WireParams:
-    """Return the constants of wire and winch."""
-    wire, winch = scenario.wire, scenario.winch
+    """Return the constants of the wire."""
+    wire = scenario.wire
     return WireParams(
         elastic_modulus=wire.elastic_modulus_pa,
         diameter=wire.diameter_m,
         fill_factor=wire.fill_factor,
         damping_ratio=wire.damping_ratio,
-        speed_max=winch.speed_max_m_s,
-        accel_max=winch.accel_max_m_s2,
-        length_min=winch.length_min_m,
-        length_max=winch.length_max_m,
+        mass_per_length=wire.mass_kg_m,
         gravity=scenario.constants.gravity_m_s2,
         phase_max=wire.phase_max_rad,
         micro_step_max=wire.micro_step_max_ms * 1e-3,
+    )
+
+
+def tip_weight(scenario: Scenario) -> float:
+    """Return what hangs on the tip at the start [N]: the load, unless it rests on something, its hook and the wire."""
+    payload = scenario.payload
+    resting = payload.box is not None and payload.box.rests_on is not None
+    mass = payload.hook_mass_kg if resting else payload.mass_kg
+    return scenario.constants.gravity_m_s2 * (mass + scenario.wire.mass_kg_m * scenario.winch.initial_length_m)
+
+
+def winch_params(scenario: Scenario) -> WinchParams:
+    """Return the constants of the winch, all torques and inertias at the drum."""
+    wire, winch, drum = scenario.wire, scenario.winch, scenario.winch.drum
+    return WinchParams(
+        speed_max=winch.speed_max_m_s,
+        accel_max=winch.accel_max_m_s2,
+        jerk_max=winch.jerk_max_m_s3,
+        length_min=winch.length_min_m,
+        length_max=winch.length_max_m,
+        core_radius=0.5 * drum.core_diameter_m,
+        wire_diameter=wire.diameter_m,
+        wire_length=drum.wire_length_m,
+        turns=float(drum.turns_per_layer),
+        motor_torque=drum.motor_torque_n_m * drum.gear_ratio,
+        brake_torque=drum.brake_torque_n_m,
+        drag_torque=drum.drag_torque_n_m,
+        inertia=drum.drum_inertia_kg_m2 + drum.motor_inertia_kg_m2 * drum.gear_ratio**2,
+        sheave_friction=wire.sheave_friction,
+        leak_speed=drum.drift_speed_m_s,
     )

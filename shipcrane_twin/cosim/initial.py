@@ -59,8 +59,7 @@ def at_rest(scenario: Scenario) -> Rest:
     joints = np.array(scenario.crane.initial_joints)
     tip_b = tip_state(chain, joints, np.zeros_like(joints))[0]
     inertia = composite_inertia(chain, joints)
-    mass = scenario.payload.mass_kg
-    force_w = np.array([0.0, 0.0, -mass * params.gravity])
+    force_w = np.array([0.0, 0.0, -build.tip_weight(scenario)])
     start = scenario.vessel.initial
     yaw = yaw_from_heading(start.heading_deg)
     if scenario.vessel.ballast.mode == "level":

@@ -1,7 +1,7 @@
-"""The load on the hook as a point mass, its winch, and their motion over one macro step.
+"""The load on the hook as a point mass, and its motion over one macro step.
 
-State, float64 (9,): position (3) and velocity (3) of the load in the world, unstretched wire length
-paid out [m], its rate [m/s], and the mass on the hook [kg].
+State, float64 (14,): position (3) and velocity (3) of the load in the world, unstretched wire length
+paid out [m], its rate [m/s], the mass on the hook [kg], and the record of snaps (5), see `wire`.
 """
 
 from typing import NamedTuple
@@ -11,20 +11,22 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_world
-from shipcrane_twin.physics.wire import pull, wire_loss, wire_stiffness
+from shipcrane_twin.physics.winch import Hold, drum_slip
+from shipcrane_twin.physics.wire import note_tension, pull, resolved_stiffness, wire_loss, wire_stiffness
+
+LENGTH, SPEED, MASS, RECORD = 6, 7, 8, 9
+"""Columns of the state after position and velocity."""
 
 
 class WireParams(NamedTuple):
-    """Constants of wire and winch.
+    """Constants of the wire.
 
     Attributes
     ----------
     elastic_modulus, diameter, fill_factor, damping_ratio : float
         [Pa], [m], metallic share of the section, axial damping ratio of the hanging load.
-    speed_max, accel_max : float
-        Winch limits [m/s], [m/s2].
-    length_min, length_max : float
-        Limits of the paid-out length [m].
+    mass_per_length : float
+        [kg/m]; 0 for a wire without mass.
     gravity : float
         [m/s2].
     phase_max : float
@@ -37,10 +39,7 @@ class WireParams(NamedTuple):
     diameter: float
     fill_factor: float
     damping_ratio: float
-    speed_max: float
-    accel_max: float
-    length_min: float
-    length_max: float
+    mass_per_length: float
     gravity: float
     phase_max: float
     micro_step_max: float
@@ -68,57 +67,74 @@ def place_tip(prev: Array, after: Array, part: float, step_s: float, tip: Array)
 
 
 @njit(cache=True)
-def winch_speed(wire: WireParams, length: float, speed: float, command: float, step_s: float) -> float:
-    """Return the winch speed [m/s] after one step, within speed, acceleration and length limits.
+def carried(wire: WireParams, length: float, mass: float) -> tuple[float, float]:
+    """Return inertia [kg] and weight [N] at the load's end of the wire, with the wire's own share.
 
-    The speed that still stops before an end with the allowed deceleration bounds the result.
+    Notes
+    -----
+    A third of the wire's mass and half of its weight: with them the axial mode (Rayleigh), the stretch under the
+    wire's weight and its sway as a straight rod come out right. The other half of the weight hangs on the tip. What
+    inertia the tip has of the wire, up to two thirds of its mass, is left out, and so is sag.
     """
-    wanted = min(wire.speed_max, max(-wire.speed_max, command))
-    change = wire.accel_max * step_s
-    out = min(speed + change, max(speed - change, wanted))
-    room_out = max(0.0, wire.length_max - length - 0.5 * max(0.0, speed) * step_s)
-    room_in = max(0.0, length - wire.length_min - 0.5 * max(0.0, -speed) * step_s)
-    out = min(out, braking_speed(room_out, wire.accel_max, step_s))
-    return max(out, -braking_speed(room_in, wire.accel_max, step_s))
+    own = wire.mass_per_length * length
+    return mass + own * (1.0 / 3.0), wire.gravity * (mass + 0.5 * own)
 
 
 @njit(cache=True)
-def braking_speed(room: float, accel: float, step_s: float) -> float:
-    """Return the largest speed at a step's end from which a stop within ``room`` [m] is still possible.
+def wire_on_tip(wire: WireParams, length: float) -> float:
+    """Return the wire's weight [N] that does not hang at the load's end, see `carried`."""
+    return 0.5 * wire.mass_per_length * length * wire.gravity
 
-    The step itself uses up ``v step / 2``, and the last step of a stop, with less than ``a step`` left to
-    lose, up to as much again: the root of ``v^2 / (2 a) + v step = room``.
-    """
-    change = accel * step_s
-    return np.sqrt(change * change + 2.0 * accel * room) - change
+
+@njit(cache=True)
+def hanging_wire(wire: WireParams, length: float, mass: float, weight: float) -> tuple[float, float, float]:
+    """Return stiffness [N/m], loss factor [s/m] and static stretch [m] with this inertia [kg] and weight [N]."""
+    stiffness = resolved_stiffness(
+        wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length), mass, wire.phase_max
+    )
+    return stiffness, wire_loss(stiffness, mass, wire.damping_ratio, weight), weight / stiffness
 
 
 @njit(cache=True)
 def micro_steps(wire: WireParams, length: float, mass: float, step_s: float) -> int:
-    """Return how many micro steps resolve the wire's axial vibration over one macro step."""
-    stiffness = wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length)
-    by_phase = step_s * np.sqrt(stiffness / mass) / wire.phase_max
-    by_time = step_s / wire.micro_step_max - 1e-9  # a whole quotient must not round up
-    return int(np.ceil(max(1.0, by_phase, by_time)))
+    """Return how many micro steps resolve the wire's axial vibration over one macro step.
+
+    At most ``step_s / STEP_MIN``, a thousand for 0.1 s, however light the load and short the wire.
+    """
+    inertia, weight = carried(wire, length, mass)
+    stiffness = hanging_wire(wire, length, inertia, weight)[0]
+    by_phase = step_s * np.sqrt(stiffness / inertia) / wire.phase_max
+    by_time = step_s / wire.micro_step_max
+    return int(np.ceil(max(1.0, by_phase, by_time) - 1e-9))  # a whole quotient must not round up
+
+
+@njit(cache=True)
+def least_mass(wire: WireParams, stiffness: float, dashpot: float, step_s: float) -> float:
+    """Return the mass [kg] whose vibration on a spring [N/m] and dashpot [N s/m] a micro step [s] still resolves."""
+    return max(stiffness * (step_s / wire.phase_max) ** 2, dashpot * step_s)
 
 
 @njit(cache=True)
 def payload_step(
     wire: WireParams,
+    hold: Hold,
     state: Array,
-    winch_command: float,
+    told_prev: float,
+    told_next: float,
     tip_prev: Array,
     tip_next: Array,
     step_s: float,
 ) -> tuple[Array, Array, float]:
-    """Move load and winch over one macro step under the true motion of the tip.
+    """Move the load over one macro step under the true motion of the tip.
 
     Parameters
     ----------
     wire : WireParams
-    state : float64, shape (9,)
-    winch_command : float
-        Commanded pay-out speed [m/s].
+    hold : Hold
+        What the drum holds, from `winch.winch_step`.
+    state : float64, shape (14,)
+    told_prev, told_next : float
+        Speed told to the drum at both ends of the step [m/s], linear between; what the wire runs beyond it is slip.
     tip_prev, tip_next : float64, shape (6,)
         Position and velocity of the tip in the world at both ends of the step; a cubic between.
     step_s : float
@@ -126,21 +142,22 @@ def payload_step(
 
     Returns
     -------
-    state : float64, shape (9,)
+    state : float64, shape (14,)
     tip_force_w : float64, shape (3,)
-        Mean over the step of the wire's force on the tip [N, world].
+        Mean over the step of the force of wire and load on the tip [N, world].
     tension_max : float
-        Largest tension seen at a micro step's start [N].
+        Largest tension at the load's end seen at a micro step's start [N].
     """
     new = state.copy()
-    speed_prev = state[7]
-    speed_next = winch_speed(wire, state[6], speed_prev, winch_command, step_s)
-    mass = state[8]
-    count = micro_steps(wire, state[6], mass, step_s)
+    record = new[RECORD:]
+    mass = state[MASS]
+    count = micro_steps(wire, state[LENGTH], mass, step_s)
     h = step_s / count
     tip, stage_state, total = np.empty(6), np.empty(6), np.empty(6)
     force, impulse = np.zeros(3), np.zeros(3)
-    tension_max = 0.0
+    tension_max, slid, slip = 0.0, 0.0, state[SPEED] - told_prev
+    told_accel = (told_next - told_prev) / step_s
+    drum_holds = hold.pull == np.inf and hold.leak == 0.0 and slip == 0.0
 
     for micro in range(count):
         stage_state[:] = new[:6]
@@ -148,20 +165,27 @@ def payload_step(
         for stage in range(4):
             middle = stage == 1 or stage == 2
             weight = 2.0 / 6.0 if middle else 1.0 / 6.0
-            part = (micro + (0.5 if middle else stage / 3.0)) / count
-            rate = speed_prev + part * (speed_next - speed_prev)
-            length = state[6] + part * step_s * 0.5 * (speed_prev + rate)
+            share = 0.5 if middle else stage / 3.0
+            part = (micro + share) / count
+            told = told_prev + part * (told_next - told_prev)
+            rate = told + slip
+            length = state[LENGTH] + part * step_s * 0.5 * (told_prev + told) + (slid + share * h * slip)
             place_tip(tip_prev, tip_next, part, step_s, tip)
-            stiffness = wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length)
-            loss = wire_loss(stiffness, mass, wire.damping_ratio, wire.gravity)
-            stretch_static = mass * wire.gravity / stiffness
+            inertia, hanging = carried(wire, length, mass)
+            stiffness, loss, stretch_static = hanging_wire(wire, length, inertia, hanging)
             tension = pull(tip, stage_state, length, rate, stiffness, loss, stretch_static, force)
             if stage == 0:
                 tension_max = max(tension_max, tension)
+                note_tension(record, tension)
+                slip_next = slip
+                if not drum_holds:
+                    light = least_mass(wire, stiffness, loss * stiffness * stretch_static, h)
+                    drawn = tension + wire_on_tip(wire, length)
+                    slip_next = drum_slip(hold, slip, told_accel, rate, length, drawn, light, h)
             reach = h if stage == 2 else 0.5 * h
             for i in range(3):
                 velocity = stage_state[3 + i]
-                acceleration = force[i] / mass - (wire.gravity if i == 2 else 0.0)
+                acceleration = (force[i] - (hanging if i == 2 else 0.0)) / inertia
                 impulse[i] -= weight * h * force[i]
                 total[i] += weight * velocity
                 total[3 + i] += weight * acceleration
@@ -169,22 +193,25 @@ def payload_step(
                 stage_state[3 + i] = new[3 + i] + reach * acceleration
         for i in range(6):
             new[i] += h * total[i]
+        slid += h * slip
+        slip = slip_next
 
-    new[6] = state[6] + 0.5 * (speed_prev + speed_next) * step_s
-    new[7] = speed_next
+    new[LENGTH] = state[LENGTH] + 0.5 * (told_prev + told_next) * step_s + slid
+    new[SPEED] = told_next + slip
+    impulse[2] -= wire_on_tip(wire, state[LENGTH]) * step_s
     return new, impulse / step_s, tension_max
 
 
 @njit(cache=True)
 def hanging_state(wire: WireParams, tip_pos_w: Array, tip_vel_w: Array, length: float, mass: float) -> Array:
-    """Return the state (9,) of a load that hangs at rest relative to the tip, wire stretched by its weight."""
-    stiffness = wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length)
-    state = np.zeros(9)
+    """Return the state (14,) of a load that hangs at rest relative to the tip, wire stretched by its weight."""
+    inertia, weight = carried(wire, length, mass)
+    state = np.zeros(RECORD + 5)
     state[:3] = tip_pos_w
-    state[2] -= length + mass * wire.gravity / stiffness
+    state[2] -= length + hanging_wire(wire, length, inertia, weight)[2]
     state[3:6] = tip_vel_w
-    state[6] = length
-    state[8] = mass
+    state[LENGTH] = length
+    state[MASS] = mass
     return state
 
 

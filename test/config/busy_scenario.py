@@ -105,6 +105,17 @@ def weak():
     for link, effort in zip(data["crane"]["links"], (50.0, 1e4, 5e3, 1e3), strict=True):
         link["drive"]["effort_max"] = effort
     data["dp"]["controller"]["load_max"] = [1.0, 1.0, 10.0]
+    winch = data["winch"]
+    winch["length_max_m"] = 80.0
+    # motor and brake hold less than the load; 5 cm more wire on the drum than two layers take
+    winch["drum"] |= {"motor_torque_n_m": 15.0, "brake_torque_n_m": 1.5e3, "wire_length_m": 83.48}
+    return data
+
+
+def without_power(event):
+    """The winch loses its motor."""
+    data = busy()
+    data["events"] = [{"label": "fault", "at_s": 0.2, "event": event}]
     return data
 
 

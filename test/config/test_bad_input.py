@@ -43,7 +43,7 @@ OVERRIDES = {
     "not a number": ("constants.gravity_m_s2=.nan", "constants.gravity_m_s2 is nan, expected a finite number"),
     "infinite": ("payload.mass_kg=.inf", "payload.mass_kg is inf, expected a finite number"),
     "no such choice": ("recording.compression=gzip", "recording.compression is 'gzip', expected 'zstd' or 'none'"),
-    "no such event": ("events.0.event=explode", "events[0].event is 'explode', expected 'release_payload'"),
+    "no such event": ("events.0.event=explode", "events[0].event is 'explode', expected 'release_payload', '"),
     "missing": ("constants={}", "constants.gravity_m_s2 is missing; add it"),
     "step that does not divide": (
         "macro_step_ms=30",
@@ -104,6 +104,11 @@ OVERRIDES = {
         "dp.sensors.position.period_ms is 250.0, expected a whole multiple of dp.period_ms = 100",
     ),
     "sensor faster than DP": ("dp.sensors.gyro.period_ms=50.0", "expected a whole multiple of dp.period_ms = 100"),
+    "less wire than it pays out": (
+        "winch.drum.wire_length_m=50.0",
+        "winch.drum.wire_length_m is 50.0, expected at least winch.length_max_m = 100",
+    ),
+    "shape without its group": ("payload.shape=box", "expected the group box with shape: box, and only then"),
     "wire beyond the drum": (
         "winch.initial_length_m=200.0",
         "winch.initial_length_m is 200.0, expected a length within the winch's limits, 0.2 to 100",

@@ -88,7 +88,7 @@ def test_stiffness_is_that_of_the_metallic_section():
 
 def test_loss_gives_the_promised_dashpot_at_the_static_stretch():
     stiffness, mass = 1.6e7, 700.0
-    loss = wire_loss(stiffness, mass, 0.5, 9.80665)
+    loss = wire_loss(stiffness, mass, 0.5, mass * 9.80665)
     stretch = mass * 9.80665 / stiffness
     assert stiffness * stretch * loss == pytest.approx(2.0 * 0.5 * np.sqrt(stiffness * mass))
 

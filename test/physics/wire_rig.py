@@ -3,12 +3,17 @@
 import numpy as np
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.cosim.build import wire_params
+from shipcrane_twin.cosim.build import winch_params, wire_params
 from shipcrane_twin.physics.payload import hanging_state, payload_step
-from shipcrane_twin.physics.wire import wire_stiffness
+from shipcrane_twin.physics.winch import POWERED, Hold, winch_at_rest, winch_step
+from shipcrane_twin.physics.wire import STEP_MIN, wire_stiffness
 
-WIRE = wire_params(load_scenario("case2"))
+SCENARIO = load_scenario("case2")
+WIRE = wire_params(SCENARIO)
+WINCH = winch_params(SCENARIO)
 FIXED = np.array([1.0, -2.0, 12.0, 0.0, 0.0, 0.0])
+FAST = Hold(pull=np.inf, mass=1e3, leak=0.0, sheave_friction=0.0, length_min=0.0, length_end=np.inf)
+"""A drum that holds any pull."""
 
 
 def stiffness_at(length, wire=WIRE):
@@ -23,12 +28,33 @@ def swung_state(angle, length, mass, wire=WIRE):
     return state
 
 
-def swing(state, step_s, count, wire=WIRE, command=0.0):
-    """States at the start and after each of `count` macro steps under the fixed tip."""
+def held_step(wire, state, tip_prev, tip_next, step_s, rate=0.0):
+    """One macro step with the drum told to go on at the same rate, whatever the pull."""
+    state = state.copy()
+    state[7] = rate
+    return payload_step(wire, FAST, state, rate, rate, tip_prev, tip_next, step_s)
+
+
+def swing(state, step_s, count, wire=WIRE):
+    """States at the start and after each of `count` macro steps under the fixed tip, with the drum still."""
     states = [state]
     for _ in range(count):
-        states.append(payload_step(wire, states[-1], command, FIXED, FIXED, step_s)[0])
+        states.append(held_step(wire, states[-1], FIXED, FIXED, step_s)[0])
     return np.array(states)
+
+
+def hoist(state, step_s, count, command=0.0, drive=POWERED, winch=WINCH, wire=WIRE, at_rest=None, by_length=False):
+    """States of the load and of the winch after each of `count` macro steps under the fixed tip."""
+    memory = winch_at_rest(winch, step_s) if at_rest is None else at_rest
+    states, memories, forces = [state], [memory], []
+    for _ in range(count):
+        told = memory[1] if drive == POWERED else 0.0
+        memory, hold = winch_step(winch, memory, states[-1][6], command, by_length, drive, step_s)
+        state, force, tension = payload_step(wire, hold, states[-1], told, memory[1], FIXED, FIXED, step_s)
+        states.append(state)
+        memories.append(memory)
+        forces.append((*force, tension))
+    return np.array(states), np.array(memories), np.array(forces)
 
 
 def energies(states, wire=WIRE):
@@ -36,5 +62,6 @@ def energies(states, wire=WIRE):
     mass, length = states[:, 8], states[:, 6]
     kinetic = 0.5 * mass * np.sum(states[:, 3:6] ** 2, axis=1)
     stretch = np.maximum(0.0, np.linalg.norm(states[:, :3] - FIXED[:3], axis=1) - length)
-    elastic = 0.5 * stiffness_at(length, wire) * stretch**2
+    stiffness = np.minimum(stiffness_at(length, wire), mass * (wire.phase_max / STEP_MIN) ** 2)
+    elastic = 0.5 * stiffness * stretch**2
     return kinetic, kinetic + elastic + mass * wire.gravity * (states[:, 2] - FIXED[2])
