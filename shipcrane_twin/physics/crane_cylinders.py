@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_chain import Ints
+from shipcrane_twin.physics.arrays import Array, Ints
 
 LINEAR = 0
 TRIANGLE = 1

@@ -9,6 +9,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, place_frames
+from shipcrane_twin.physics.crane_segments import gather_segments
 
 
 class ChainWork(NamedTuple):
@@ -38,6 +39,10 @@ class ChainWork(NamedTuple):
         Proper acceleration of the tip while all joint accelerations are zero [m/s2].
     bias : float64, shape (n,)
         Joint efforts needed at zero joint acceleration.
+    body : float64, shape (9,)
+        Centre (3) and inertia (6) of one link in its own frame.
+    slide : float64, shape (n, 10)
+        How the segments of each link trail behind it, see `crane_segments.gather_segments`.
     """
 
     rotation_b: Array
@@ -50,6 +55,8 @@ class ChainWork(NamedTuple):
     mass_matrix: Array
     tip_acc_b: Array
     bias: Array
+    body: Array
+    slide: Array
 
 
 @njit(cache=True)
@@ -66,6 +73,8 @@ def new_work(joints: int) -> ChainWork:
         np.zeros((joints, joints)),
         np.zeros(3),
         np.zeros(joints),
+        np.zeros(9),
+        np.zeros((joints, 10)),
     )
 
 
@@ -74,15 +83,20 @@ def place_links(chain: ChainParams, q: Array, work: ChainWork) -> None:
     """Fill frames, centres of gravity, inertias and joint screws of `work` for the pose q (n,)."""
     place_frames(chain, q, work.rotation_b, work.origin_b)
     for i in range(chain.kind.shape[0]):
-        c0, c1, c2 = chain.cog[i, 0], chain.cog[i, 1], chain.cog[i, 2]
+        if chain.segments.first[i + 1] > chain.segments.first[i]:
+            gather_segments(
+                chain.segments, i, q[i], chain.mass[i], chain.cog, chain.inertia, work.body, work.slide
+            )
+        else:
+            _own_body(chain.cog, chain.inertia, i, work.body)
         for k in range(3):
             work.cog_b[i, k] = (
                 work.origin_b[i, k]
-                + work.rotation_b[i, k, 0] * c0
-                + work.rotation_b[i, k, 1] * c1
-                + work.rotation_b[i, k, 2] * c2
+                + work.rotation_b[i, k, 0] * work.body[0]
+                + work.rotation_b[i, k, 1] * work.body[1]
+                + work.rotation_b[i, k, 2] * work.body[2]
             )
-        _turn_inertia(work.rotation_b, chain.inertia, work.inertia_b, i)
+        _turn_inertia(work.rotation_b, work.body, work.inertia_b, i)
         zx, zy, zz = work.rotation_b[i, 0, 2], work.rotation_b[i, 1, 2], work.rotation_b[i, 2, 2]
         if chain.kind[i] == REVOLUTE:
             ux, uy, uz = cross(work.origin_b[i, 0], work.origin_b[i, 1], work.origin_b[i, 2], zx, zy, zz)
@@ -109,10 +123,33 @@ def project_row(rows: Array, i: int, a: float, b: float, c: float, d: float, e: 
 
 
 @njit(cache=True)
-def _turn_inertia(rotation: Array, tensor: Array, out: Array, i: int) -> None:
-    """Write R J R^T of link i as xx, xy, xz, yy, yz, zz."""
-    jxx, jxy, jxz = tensor[i, 0, 0], tensor[i, 0, 1], tensor[i, 0, 2]
-    jyy, jyz, jzz = tensor[i, 1, 1], tensor[i, 1, 2], tensor[i, 2, 2]
+def _own_body(cog: Array, inertia: Array, i: int, body: Array) -> None:
+    """Fill body (9,) with centre and inertia of a link without segments."""
+    body[0], body[1], body[2] = cog[i, 0], cog[i, 1], cog[i, 2]
+    body[3], body[4], body[5] = inertia[i, 0, 0], inertia[i, 0, 1], inertia[i, 0, 2]
+    body[6], body[7], body[8] = inertia[i, 1, 1], inertia[i, 1, 2], inertia[i, 2, 2]
+
+
+@njit(cache=True)
+def slide_moment(work: ChainWork, i: int, first: int) -> tuple[float, float, float]:
+    """Return a sum over segments of link i, weight times place, in base axes from the base origin.
+
+    ``first`` is the column of `ChainWork.slide` that holds the sum of the weights; three for the places follow.
+    """
+    s = work.slide[i, first]
+    x, y, z = work.slide[i, first + 1], work.slide[i, first + 2], work.slide[i, first + 3]
+    r = work.rotation_b
+    return (
+        s * work.origin_b[i, 0] + r[i, 0, 0] * x + r[i, 0, 1] * y + r[i, 0, 2] * z,
+        s * work.origin_b[i, 1] + r[i, 1, 0] * x + r[i, 1, 1] * y + r[i, 1, 2] * z,
+        s * work.origin_b[i, 2] + r[i, 2, 0] * x + r[i, 2, 1] * y + r[i, 2, 2] * z,
+    )
+
+
+@njit(cache=True)
+def _turn_inertia(rotation: Array, body: Array, out: Array, i: int) -> None:
+    """Write R J R^T of link i as xx, xy, xz, yy, yz, zz; J is in body[3:9]."""
+    jxx, jxy, jxz, jyy, jyz, jzz = body[3], body[4], body[5], body[6], body[7], body[8]
     ax, ay, az = rotation[i, 0, 0], rotation[i, 0, 1], rotation[i, 0, 2]
     bx, by, bz = rotation[i, 1, 0], rotation[i, 1, 1], rotation[i, 1, 2]
     cx, cy, cz = rotation[i, 2, 0], rotation[i, 2, 1], rotation[i, 2, 2]

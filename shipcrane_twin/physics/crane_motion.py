@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike
 
-from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_chain import ChainParams, Ints, fill_tip
+from shipcrane_twin.physics.arrays import Array, Ints
+from shipcrane_twin.physics.crane_chain import ChainParams, fill_tip
 from shipcrane_twin.physics.crane_dynamics import (
     bias_forces,
     fill_base_wrench,

@@ -8,8 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike
 
-from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_chain import Ints
+from shipcrane_twin.physics.arrays import Array, Ints
 from shipcrane_twin.physics.crane_cylinders import DriveParams, joint_rates_per_length, joints_from_lengths
 
 FLAG_EFFORT = 1  # the servo asked for more than effort_max somewhere in the step

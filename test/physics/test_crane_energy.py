@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from palfinger import GRAVITY, UP, mixed_chain, palfinger_chain, palfinger_limits
+from palfinger import GRAVITY, UP, mixed_chain, eight_segment_chain, mixed_telescopes, palfinger_chain, palfinger_limits
 from scipy.spatial.transform import Rotation
 
 from shipcrane_twin.physics.crane_chain import tip_jacobian, tip_state
