@@ -57,7 +57,7 @@ class EventConfig:
 
     label: Text
     at_s: NotNegative
-    event: Literal["release_payload"]
+    event: Literal["release_payload", "coast", "brake", "hydraulic_failure"]
 
 
 @settings
@@ -154,15 +154,19 @@ def time_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
 
 
 def crane_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
-    """Check that the crane has the joints that commands name, and a start value for each."""
+    """Check that every joint of the crane has a name of its own and a start value."""
     crane = scenario.crane
     count = len(crane.links)
     found: list[tuple[list[str | int], str]] = []
     if len(crane.initial_joints) != count:
         names = ", ".join(scenario.joint_names)
         found.append((["crane", "initial_joints"], f"expected {count} values, one per joint ({names})"))
-    if scenario.joint_names != ("slew", "boom", "knuckle", "telescope"):
-        found.append((["crane", "links"], "expected the joints slew, boom, knuckle, telescope in this order"))
+    names = [*scenario.joint_names, WINCH]
+    for i, name in enumerate(scenario.joint_names):
+        if names.count(name) > 1:
+            found.append((["crane", "links", i, "joint"], f"expected a name of its own; there is another {name}"))
+        if bool(crane.links[i].segments) and crane.links[i].kind != "prismatic":
+            found.append((["crane", "links", i, "segments"], "expected none: only a prismatic joint has segments"))
     return found
 
 

@@ -38,7 +38,7 @@ class ChainParams(NamedTuple):
     cog : float64, shape (n, 3)
         Link centres of gravity in their own link frames, without segments [m].
     inertia : float64, shape (n, 3, 3)
-        Link inertias about those centres, in link axes, without segments [kg m2].
+        Link inertias about those centres, in link axes [kg m2]; those of segments about their own are added.
     segments : SegmentParams
         Telescope segments that trail behind their link; none on most links.
     """
@@ -109,7 +109,7 @@ def make_chain(
         kind=np.array([JOINT_KINDS[name] for name in kind], dtype=np.int64),
         mass=masses + [sum(segment.mass for segment in trailing.get(link, ())) for link in range(joints)],
         cog=_checked(cog, (joints, 3), "cog"),
-        inertia=tensors,
+        inertia=tensors + [sum((np.asarray(s.inertia) for s in trailing.get(i, ())), np.zeros((3, 3))) for i in range(joints)],
         segments=pack_segments(joints, trailing, handover),
     )
 

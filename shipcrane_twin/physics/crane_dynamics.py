@@ -52,7 +52,7 @@ def fill_mass_matrix(chain: ChainParams, work: ChainWork) -> None:
         if work.slide[i, 0] != 0.0:
             # trailing segments move by r = ds/dq - 1 per unit rate against their link
             r = work.slide[i, 0]
-            ux, uy, uz = slide_moment(work, i, 0)
+            ux, uy, uz = slide_moment(work.slide, work.rotation_b, work.origin_b, i, 0)
             ux, uy, uz = cross(ux, uy, uz, vx, vy, vz)
             px, py, pz = px + r * vx, py + r * vy, pz + r * vz
             lx, ly, lz = lx + ux, ly + uy, lz + uz
@@ -98,53 +98,46 @@ def fill_bias(chain: ChainParams, qd: Array, base: Array, work: ChainWork) -> No
         cx, cy, cz = cross(cx, cy, cz, kx, ky, kz)
         store_row(work.wrench_b, i, kx, ky, kz, ux + gx + cx, uy + gy + cy, uz + gz + cz)
         work.bias[i] = 0.0
-        if work.slide[i, 0] != 0.0:
-            _add_slide(i, qd[i], wx, wy, wz, ax, ay, az, fx, fy, fz, work)
+        store_row(work.motion_b, i, wx, wy, wz, ax, ay, az)
+        work.motion_b[i, 6], work.motion_b[i, 7], work.motion_b[i, 8] = fx, fy, fz
     tx, ty, tz = work.origin_b[joints, 0], work.origin_b[joints, 1], work.origin_b[joints, 2]
     sx, sy, sz = _swing(wx, wy, wz, ax, ay, az, tx - px, ty - py, tz - pz)
     work.tip_acc_b[0], work.tip_acc_b[1], work.tip_acc_b[2] = fx + sx, fy + sy, fz + sz
+    _add_slides(joints, qd, work)
     _gather_inward(joints, base, work)
 
 
 @njit(cache=True)
-def _add_slide(
-    i: int,
-    rate: float,
-    wx: float,
-    wy: float,
-    wz: float,
-    ax: float,
-    ay: float,
-    az: float,
-    fx: float,
-    fy: float,
-    fz: float,
-    work: ChainWork,
-) -> None:
-    """Add to wrench and bias of a telescope what its segments differ from a rigid link.
+def _add_slides(joints: int, qd: Array, work: ChainWork) -> None:
+    """Add to wrenches and bias what the segments of telescopes differ from a rigid link.
 
     Against the link, a segment has the acceleration ``2 w x z r qd + z s'' qd^2`` along the telescope's axis z, and
-    the joint feels its force times ``ds/dq = 1 + r``. w, a, f: motion of the link's frame as in `fill_bias`.
+    the joint feels its force times ``ds/dq = 1 + r``.
     """
-    zx, zy, zz = work.rotation_b[i, 0, 2], work.rotation_b[i, 1, 2], work.rotation_b[i, 2, 2]
-    gx, gy, gz = cross(wx, wy, wz, zx, zy, zz)
-    gx, gy, gz = 2.0 * rate * gx, 2.0 * rate * gy, 2.0 * rate * gz
-    bx, by, bz = rate * rate * zx, rate * rate * zy, rate * rate * zz
-    r, b = work.slide[i, 0], work.slide[i, 4]
-    rx, ry, rz = slide_moment(work, i, 0)
-    cx, cy, cz = cross(rx, ry, rz, gx, gy, gz)
-    sx, sy, sz = slide_moment(work, i, 4)
-    dx, dy, dz = cross(sx, sy, sz, bx, by, bz)
-    work.wrench_b[i, 0] += r * gx + b * bx
-    work.wrench_b[i, 1] += r * gy + b * by
-    work.wrench_b[i, 2] += r * gz + b * bz
-    work.wrench_b[i, 3] += cx + dx
-    work.wrench_b[i, 4] += cy + dy
-    work.wrench_b[i, 5] += cz + dz
-    ox, oy, oz = work.origin_b[i, 0], work.origin_b[i, 1], work.origin_b[i, 2]
-    sx, sy, sz = _swing(wx, wy, wz, ax, ay, az, rx - r * ox, ry - r * oy, rz - r * oz)
-    along = zx * (r * fx + sx) + zy * (r * fy + sy) + zz * (r * fz + sz)
-    work.bias[i] = along + work.slide[i, 9] * rate * rate
+    slide, rotation_b, origin_b, motion_b = work.slide, work.rotation_b, work.origin_b, work.motion_b
+    for i in range(joints):
+        r, b, rate = slide[i, 0], slide[i, 4], qd[i]
+        if r == 0.0:
+            continue
+        wx, wy, wz = motion_b[i, 0], motion_b[i, 1], motion_b[i, 2]
+        zx, zy, zz = rotation_b[i, 0, 2], rotation_b[i, 1, 2], rotation_b[i, 2, 2]
+        gx, gy, gz = cross(wx, wy, wz, zx, zy, zz)
+        gx, gy, gz = 2.0 * rate * gx, 2.0 * rate * gy, 2.0 * rate * gz
+        bx, by, bz = rate * rate * zx, rate * rate * zy, rate * rate * zz
+        rx, ry, rz = slide_moment(slide, rotation_b, origin_b, i, 0)
+        cx, cy, cz = cross(rx, ry, rz, gx, gy, gz)
+        sx, sy, sz = slide_moment(slide, rotation_b, origin_b, i, 4)
+        dx, dy, dz = cross(sx, sy, sz, bx, by, bz)
+        work.wrench_b[i, 0] += r * gx + b * bx
+        work.wrench_b[i, 1] += r * gy + b * by
+        work.wrench_b[i, 2] += r * gz + b * bz
+        work.wrench_b[i, 3] += cx + dx
+        work.wrench_b[i, 4] += cy + dy
+        work.wrench_b[i, 5] += cz + dz
+        rx, ry, rz = rx - r * origin_b[i, 0], ry - r * origin_b[i, 1], rz - r * origin_b[i, 2]
+        sx, sy, sz = _swing(wx, wy, wz, motion_b[i, 3], motion_b[i, 4], motion_b[i, 5], rx, ry, rz)
+        sx, sy, sz = sx + r * motion_b[i, 6], sy + r * motion_b[i, 7], sz + r * motion_b[i, 8]
+        work.bias[i] = zx * sx + zy * sy + zz * sz + slide[i, 9] * rate * rate
 
 
 @njit(cache=True)

@@ -92,7 +92,7 @@ def kinetic_energy(chain: ChainParams, q: Array, qd: Array, v0: Array, w0: Array
         energy += t[1] * wx * wy + t[2] * wx * wz + t[4] * wy * wz
         if work.slide[i, 0] != 0.0:
             # segments that trail: m r qd z against the velocity that they would have with their link
-            hx, hy, hz = slide_moment(work, i, 0)
+            hx, hy, hz = slide_moment(work.slide, work.rotation_b, work.origin_b, i, 0)
             ux, uy, uz = cross(wx, wy, wz, hx, hy, hz)
             r = work.slide[i, 0]
             energy += qd[i] * (s[0] * (r * vx + ux) + s[1] * (r * vy + uy) + s[2] * (r * vz + uz))

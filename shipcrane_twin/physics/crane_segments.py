@@ -33,26 +33,20 @@ class Segment(NamedTuple):
 
 
 class SegmentParams(NamedTuple):
-    """Trailing segments of all links, those of link i at first[i] to first[i + 1] - 1.
+    """Trailing segments of all links, those of link i in rows first[i] to first[i + 1] - 1.
 
     Attributes
     ----------
     first : int64, shape (n + 1,)
-    mass, stop : float64, shape (k,)
-        [kg]; extension of the telescope at which the segment stops [m].
-    cog : float64, shape (k, 3)
-        In the link's frame at zero extension [m].
-    inertia : float64, shape (n, 3, 3)
-        Sum over the segments of each link, each about its own centre [kg m2].
+    rows : float64, shape (k, 5)
+        Mass [kg], extension of the telescope at which the segment stops [m], and centre of gravity x, y, z in the
+        link's frame at zero extension [m].
     handover : float
         Stroke over which a segment stops and the next starts [m].
     """
 
     first: Ints
-    mass: Array
-    stop: Array
-    cog: Array
-    inertia: Array
+    rows: Array
     handover: float
 
 
@@ -73,16 +67,14 @@ def pack_segments(joints: int, segments: Mapping[int, Sequence[Segment]], handov
                 f"chain: handover is {handover} m and a segment of link {link} has a stroke of {segment.stroke} m; "
                 "expected a hand-over > 0 and no longer than any stroke"
             )
-    inertia = np.zeros((joints, 3, 3))
-    for link, segment in rows:
-        inertia[link] += np.asarray(segment.inertia, dtype=np.float64)
     stops = [np.cumsum([segment.stroke for segment in segments.get(link, ())]) for link in range(joints)]
+    packed = [
+        (segment.mass, stop, *np.asarray(segment.cog, dtype=np.float64))
+        for (_, segment), stop in zip(rows, np.concatenate(stops), strict=True)
+    ]
     return SegmentParams(
         first=np.array([0, *np.cumsum([len(stop) for stop in stops])], dtype=np.int64),
-        mass=np.array([segment.mass for _, segment in rows], dtype=np.float64),
-        stop=np.concatenate(stops, dtype=np.float64),
-        cog=np.array([segment.cog for _, segment in rows], dtype=np.float64).reshape(len(rows), 3),
-        inertia=inertia,
+        rows=np.array(packed, dtype=np.float64).reshape(len(rows), 5),
         handover=float(handover),
     )
 
@@ -106,38 +98,38 @@ def segment_slide(stop: float, handover: float, q: float) -> tuple[float, float,
 
 @njit(cache=True)
 def gather_segments(
-    segments: SegmentParams, i: int, q: float, mass: float, cog: Array, inertia: Array, body: Array, slide: Array
+    rows: Array, begin: int, end: int, handover: float, q: float, mass: float, i: int, body: Array, slide: Array
 ) -> None:
-    """Fill what link i with its segments is at the extension q [m], all in the link's frame.
+    """Add to link i its segments at the extension q [m], all in the link's frame.
 
     Parameters
     ----------
-    segments : SegmentParams
-    i : int
+    rows, begin, end, handover
+        Of `SegmentParams`.
     q : float
     mass : float
         Of the link with its segments [kg].
-    cog, inertia : float64, shapes (n, 3), (n, 3, 3)
-        Of the links without their segments.
-    body : float64, shape (9,)
-        Filled: common centre of gravity (3) [m] and xx, xy, xz, yy, yz, zz about it [kg m2].
+    i : int
+    body : float64, shape (n, 9)
+        Row i: centre of gravity (3) [m] of the link alone, and xx, xy, xz, yy, yz, zz of link and segments each about its
+        own centre [kg m2]; becomes the common centre and the inertia about it.
     slide : float64, shape (n, 10)
-        Row i filled: sums over the segments of m r and m r (x, y, z), of m s'' and m s'' (x, y, z), of m r^2, and of
-        m r s'', with r = ds/dq - 1.
+        Row i is filled: sums over the segments of m r and m r (x, y, z), of m s'' and m s'' (x, y, z), of m r^2, and
+        of m r s'', with r = ds/dq - 1.
     """
     for k in range(10):
         slide[i, k] = 0.0
     own = mass
-    for k in range(segments.first[i], segments.first[i + 1]):
-        own -= segments.mass[k]
-    x, y, z = cog[i, 0], cog[i, 1], cog[i, 2]
+    for k in range(begin, end):
+        own -= rows[k, 0]
+    x, y, z = body[i, 0], body[i, 1], body[i, 2]
     hx, hy, hz = own * x, own * y, own * z
     xx, xy, xz = own * x * x, own * x * y, own * x * z
     yy, yz, zz = own * y * y, own * y * z, own * z * z
-    for k in range(segments.first[i], segments.first[i + 1]):
-        m = segments.mass[k]
-        at, rate, bend = segment_slide(segments.stop[k], segments.handover, q)
-        x, y, z = segments.cog[k, 0], segments.cog[k, 1], segments.cog[k, 2] + at - q
+    for k in range(begin, end):
+        m = rows[k, 0]
+        at, rate, bend = segment_slide(rows[k, 1], handover, q)
+        x, y, z = rows[k, 2], rows[k, 3], rows[k, 4] + at - q
         hx, hy, hz = hx + m * x, hy + m * y, hz + m * z
         xx, xy, xz = xx + m * x * x, xy + m * x * y, xz + m * x * z
         yy, yz, zz = yy + m * y * y, yz + m * y * z, zz + m * z * z
@@ -154,13 +146,12 @@ def gather_segments(
             slide[i, 8] += r * (rate - 1.0)
             slide[i, 9] += b * (rate - 1.0)
     x, y, z = hx / mass, hy / mass, hz / mass
-    body[0], body[1], body[2] = x, y, z
+    body[i, 0], body[i, 1], body[i, 2] = x, y, z
     xx, xy, xz = xx - hx * x, xy - hx * y, xz - hx * z
     yy, yz, zz = yy - hy * y, yz - hy * z, zz - hz * z
-    own_j, more_j = inertia[i], segments.inertia[i]
-    body[3] = own_j[0, 0] + more_j[0, 0] + yy + zz
-    body[4] = own_j[0, 1] + more_j[0, 1] - xy
-    body[5] = own_j[0, 2] + more_j[0, 2] - xz
-    body[6] = own_j[1, 1] + more_j[1, 1] + xx + zz
-    body[7] = own_j[1, 2] + more_j[1, 2] - yz
-    body[8] = own_j[2, 2] + more_j[2, 2] + xx + yy
+    body[i, 3] += yy + zz
+    body[i, 4] -= xy
+    body[i, 5] -= xz
+    body[i, 6] += xx + zz
+    body[i, 7] -= yz
+    body[i, 8] += xx + yy

@@ -4,6 +4,7 @@ from math import atan, hypot, pi
 
 import numpy as np
 
+from shipcrane_twin.physics.crane_actuators import ActuatorParams
 from shipcrane_twin.physics.crane_chain import ChainParams, make_chain
 from shipcrane_twin.physics.crane_cylinders import DriveParams, LinearDrive, TriangleDrive, make_drives
 from shipcrane_twin.physics.crane_reference import MotionLimits, make_limits
@@ -68,14 +69,32 @@ def palfinger_drives() -> DriveParams:
     )
 
 
-def palfinger_limits(sag=None) -> MotionLimits:
+def palfinger_limits() -> MotionLimits:
     return make_limits(
         palfinger_drives(),
-        length_rate_max=[0.05, 0.01, 0.01, 0.05],
-        accel_max=[0.025, 0.02, 0.02, 0.05],
+        rate_max=[0.05, 0.01, 0.01, 0.05],
+        accel_max=[0.025, 0.008, 0.008, 0.05],
+        jerk_max=[0.1, 0.04, 0.04, 0.25],
         end_margin=0.01,
-        sag=sag,
     )
+
+
+def palfinger_actuators(**changes) -> ActuatorParams:
+    """Oil columns of 2 to 8 Hz in a working posture, strong enough for anything."""
+    stiffness = np.array([1.6e7, 1.7e8, 4.0e7, 2.6e6])
+    plain = ActuatorParams(
+        stiffness=stiffness,
+        damping=stiffness * np.array([0.11, 0.075, 0.055, 0.028]),
+        push=np.full(4, np.inf),
+        pull=np.full(4, np.inf),
+        hold_push=np.full(4, np.inf),
+        hold_pull=np.full(4, np.inf),
+        friction=np.array([1.0e4, 2.0e4, 2.0e4, 4.0e3]),
+        leak_push=np.array([1e-8, 1e-9, 1e-9, 1e-8]),
+        leak_pull=np.array([1e-8, 2e-9, 2e-9, 2e-8]),
+        tracking=2.0,
+    )
+    return plain._replace(**changes)
 
 
 def mixed_chain(**more) -> ChainParams:

@@ -32,13 +32,13 @@ def crane_model(chain, gravity_w, *, floating):
     for i, kind in enumerate(chain.kind):
         own = chain.mass[i]
         for k in segments_of(chain, i):
-            own -= chain.segments.mass[k]
+            own -= chain.segments.rows[k, 0]
             slide = model.addJoint(parent, pin.JointModelPZ(), placement(chain.dh[i]), f"segment{k}")
-            body = pin.Inertia(chain.segments.mass[k], chain.segments.cog[k], np.zeros((3, 3)))
+            body = pin.Inertia(chain.segments.rows[k, 0], chain.segments.rows[k, 2:], np.zeros((3, 3)))
             model.appendBodyToJoint(slide, body, pin.SE3.Identity())
         joint = pin.JointModelRZ() if kind == 0 else pin.JointModelPZ()
         parent = model.addJoint(parent, joint, placement(chain.dh[i]), f"joint{i}")
-        body = pin.Inertia(own, chain.cog[i], chain.inertia[i] + chain.segments.inertia[i])
+        body = pin.Inertia(own, chain.cog[i], chain.inertia[i])
         model.appendBodyToJoint(parent, body, pin.SE3.Identity())
     return model, model.createData(), parent
 
@@ -59,7 +59,7 @@ class Projection:
         n = len(q)
         for i in range(n):
             for k in segments_of(chain, i):
-                slide, slope, curve = rounded_slide(chain.segments.stop[k], chain.segments.handover, q[i])
+                slide, slope, curve = rounded_slide(chain.segments.rows[k, 1], chain.segments.handover, q[i])
                 full.append(slide)
                 rows.append(slope * np.eye(n)[i])
                 rates.append(curve * qd[i] ** 2)

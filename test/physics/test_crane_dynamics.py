@@ -26,9 +26,9 @@ def states(chain, count=120, seed=5):
     rng = np.random.default_rng(seed)
     for _ in range(count):
         q, qd, qdd = rng.normal(size=(3, chain.kind.shape[0])) * [[1.5], [1.0], [1.0]]
-        if chain.segments.stop.size:
+        if chain.segments.rows.size:
             slides = np.flatnonzero(np.diff(chain.segments.first))
-            q[slides] = rng.uniform(0.0, chain.segments.stop.max() + 0.5, slides.size)
+            q[slides] = rng.uniform(0.0, chain.segments.rows[:, 1].max() + 0.5, slides.size)
         yield q, qd, qdd, rng
 
 

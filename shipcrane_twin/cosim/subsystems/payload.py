@@ -23,7 +23,9 @@ class Payload:
         self._telemetry_every = scenario.telemetry_every
         self.commands = JointCommands((WINCH,), scenario.operations)
         self._command = np.zeros(1)
-        self._releases_ns = sorted(round(event.at_s * NS_PER_S) for event in scenario.events)
+        self._releases_ns = sorted(
+            round(event.at_s * NS_PER_S) for event in scenario.events if event.event == "release_payload"
+        )
         self._hook_mass = scenario.payload.hook_mass_kg
 
         rest = at_rest(scenario)
