@@ -29,8 +29,8 @@ STANDING_RATE = 0.1
 """Actuator speed, over its greatest, below which the brake may shut."""
 STANDING_REFERENCE = 1e-3
 """Speed of the reference, over the actuator's greatest, below which the brake may shut."""
-FRICTION_SHARE = 0.2
-"""Speed, over the actuator's greatest, at which the friction of a coasting drive has three quarters of its full force."""
+STANDING_TRIM = 0.02
+"""Speed at which the servo still trims, over the actuator's greatest, below which the brake may shut."""
 
 
 class ActuatorParams(NamedTuple):
@@ -45,7 +45,7 @@ class ActuatorParams(NamedTuple):
     hold_push, hold_pull : float64, shape (n,)
         The same of brake or load-holding valve.
     friction : float64, shape (n,)
-        Of the unpowered actuator [N].
+        Of the unpowered actuator at its greatest speed, its lines open [N].
     leak_push, leak_pull : float64, shape (n,)
         Speed at which a failed load-holding valve yields, per force that it holds [m/(s N)].
     tracking : float
@@ -67,7 +67,7 @@ class ActuatorParams(NamedTuple):
 # Columns of `drives`, float64 (n, 26), one row per drive for the length of a macro step: inner loops read one array.
 KIND, SIDE_A, SIDE_B, OFFSET, SHORTEST, LONGEST = 0, 1, 2, 3, 4, 5  # geometry, see crane_cylinders
 STIFFNESS, DAMPING, LOW, HIGH = 6, 7, 8, 9  # of the oil; limits of its force now
-FRICTION, FRICTION_SPEED, LEAK_PUSH, LEAK_PULL = 10, 11, 12, 13
+FRICTION, RATED, LEAK_PUSH, LEAK_PULL = 10, 11, 12, 13
 PATH, PATH_RATE, PATH_RATE_END, PATH_ACCEL = 14, 15, 16, 17  # over the macro step
 BEHIND, LAG, DECAY = 18, 19, 20  # reference behind path: now, time constant, decay over half a micro step
 TRIM, TRIM_RATE, YIELDED = 21, 22, 23
@@ -140,6 +140,7 @@ def prepare_drives(
             rate == 0.0
             and abs(behind) < STANDING_REFERENCE * fastest * lag
             and abs(arm * parts[1, i]) < STANDING_RATE * fastest
+            and actuators.tracking * abs(path - behind - length) < STANDING_TRIM * fastest
         )
         stopped = power != POWER_ON or (wanted[i] == 0.0 and (parts[6, i] > 0.0 or at_rest))
         parts[6, i] = 1.0 if stopped and power != POWER_COAST else 0.0
@@ -157,7 +158,7 @@ def prepare_drives(
         rows[i, LONGEST] = geometry.length_max[i]
         rows[i, STIFFNESS], rows[i, DAMPING] = actuators.stiffness[i], actuators.damping[i]
         rows[i, LOW], rows[i, HIGH] = low, high
-        rows[i, FRICTION], rows[i, FRICTION_SPEED] = actuators.friction[i], FRICTION_SHARE * fastest
+        rows[i, FRICTION], rows[i, RATED] = actuators.friction[i], fastest
         if power == POWER_LEAK:
             rows[i, LEAK_PUSH], rows[i, LEAK_PULL] = actuators.leak_push[i], actuators.leak_pull[i]
         rows[i, PATH], rows[i, PATH_RATE], rows[i, PATH_RATE_END] = path, rate, rates[i]
@@ -201,7 +202,8 @@ def fill_efforts(drives: Array, q: Array, qd: Array, power: int, effort: Array, 
         rate = arm * qd[i]
         k, c = drives[i, STIFFNESS], drives[i, DAMPING]
         if power == POWER_COAST:
-            force = -drives[i, FRICTION] * np.tanh(rate / drives[i, FRICTION_SPEED])
+            share = rate / drives[i, RATED]  # laminar and turbulent loss in the open lines, half each at rated speed
+            force = -0.5 * drives[i, FRICTION] * share * (1.0 + abs(share))
         else:
             force = k * (drives[i, OIL] - length) + c * (drives[i, OIL_RATE] - rate)
             kept = min(max(force, drives[i, LOW]), drives[i, HIGH])
