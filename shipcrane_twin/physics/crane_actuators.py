@@ -45,7 +45,7 @@ class ActuatorParams(NamedTuple):
     hold_push, hold_pull : float64, shape (n,)
         The same of brake or load-holding valve.
     friction : float64, shape (n,)
-        Of the unpowered actuator at its greatest speed, its lines open [N].
+        Of the unpowered actuator, its lines open, at its greatest speed; in proportion at others [N].
     leak_push, leak_pull : float64, shape (n,)
         Speed at which a failed load-holding valve yields, per force that it holds [m/(s N)].
     tracking : float
@@ -202,8 +202,7 @@ def fill_efforts(drives: Array, q: Array, qd: Array, power: int, effort: Array, 
         rate = arm * qd[i]
         k, c = drives[i, STIFFNESS], drives[i, DAMPING]
         if power == POWER_COAST:
-            share = rate / drives[i, RATED]  # laminar and turbulent loss in the open lines, half each at rated speed
-            force = -0.5 * drives[i, FRICTION] * share * (1.0 + abs(share))
+            force = -drives[i, FRICTION] * rate / drives[i, RATED]
         else:
             force = k * (drives[i, OIL] - length) + c * (drives[i, OIL_RATE] - rate)
             kept = min(max(force, drives[i, LOW]), drives[i, HIGH])

@@ -62,7 +62,7 @@ OVERRIDES = {
         "crane.initial_joints=[1.0, 2.0]",
         "crane.initial_joints is [1.0, 2.0], expected 4 values, one per joint (slew, boom, knuckle, telescope)",
     ),
-    "joints in another order": ("crane.links.0.joint=turn", "expected the joints slew, boom, knuckle, telescope"),
+    "two joints of one name": ("crane.links.0.joint=boom", "expected a name of its own; there is another boom"),
     "wire beyond the drum": (
         "winch.initial_length_m=200.0",
         "winch.initial_length_m is 200.0, expected a length within the winch's limits, 0.2 to 100",
@@ -99,7 +99,7 @@ OVERRIDES = {
         "vessel.wind_areas.table.3.0=31.0",
         "expected directions from 0 to 180 degrees in equal steps in the first column",
     ),
-    "keys of another drive": ("crane.links.1.drive.kind=motor", "expected for kind motor the keys speed_max_rad_s and"),
+    "keys of another drive": ("crane.links.1.drive.kind=motor", "expected for kind motor the keys accel_max_rad_s2, brake_torque_n_m,"),
 }
 
 

@@ -28,7 +28,7 @@ REFUSED = {
         "expected none negative and none greater than the sum of the others",
     ),
     "capsizing crane": ("crane.links.1.mass_kg=5.0e+5", "the ship finds no equilibrium below 40 degrees of heel"),
-    "drive too weak": ("crane.links.1.drive.effort_max=1.0e+3", "the boom needs "),
+    "drive too weak": ("crane.links.1.drive.pressure_max_pa=1.0e+6", "the boom needs "),
     "servo steps too long": ("crane.servo.micro_step_max_ms=50.0", "too long for the fastest servo mode"),
 }
 

@@ -89,7 +89,7 @@ def palfinger_actuators(**changes) -> ActuatorParams:
         pull=np.full(4, np.inf),
         hold_push=np.full(4, np.inf),
         hold_pull=np.full(4, np.inf),
-        friction=np.array([1.0e4, 2.0e4, 2.0e4, 500.0]),
+        friction=np.array([1.0e4, 8.0e4, 8.0e4, 500.0]),
         leak_push=np.array([1e-8, 1e-9, 1e-9, 1e-8]),
         leak_pull=np.array([1e-8, 2e-9, 2e-9, 2e-8]),
         tracking=2.0,

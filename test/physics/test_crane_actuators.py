@@ -170,7 +170,7 @@ def test_coasting_booms_fall_onto_their_end_stops_and_pass_them_by_millimetres(m
     lengths = np.array([lengths_from_joints(DRIVES, q) for q in states[:, :4]])
     assert lengths[-1, 1] < DRIVES.length_min[1] + 1e-3  # the main boom lies on its stop
     past = np.maximum(DRIVES.length_min - lengths, lengths - DRIVES.length_max)[:, 1:].max()
-    measured("a coasting crane passes its cylinder ends by", 1e3 * past, 5.0, "mm")
+    measured("a coasting crane passes its cylinder ends by", 1e3 * past, 8.0, "mm")
     np.testing.assert_allclose(states[-1, 4:8], 0.0, atol=1e-3)
 
 
@@ -182,7 +182,7 @@ def test_coasting_gives_friction_and_nothing_else():
     for state, effort in zip(states, efforts, strict=True):
         slope = joint_rates_per_length(DRIVES, state[:4])
         share = state[4:8] / slope / LIMITS.rate_max
-        force = -actuators.friction * (share + share * np.abs(share)) / 2.0
+        force = -actuators.friction * share
         np.testing.assert_allclose(effort * slope, force, rtol=1e-9, atol=1e-6)
 
 
