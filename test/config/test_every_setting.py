@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from busy_scenario import at_ends, busy, flow_along_row, look, put, slow, weak
+from busy_scenario import at_ends, busy, failing, flow_along_row, look, overloaded, put, slow, weak
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -19,6 +19,7 @@ WITHOUT_EFFECT_ON_PHYSICS = {
     "recording.chunk_kib": "layout of the bag",
     "environment.current_profile.0.0": "the surface, refused elsewhere",
     "dp.settled_after_s": "from when the summary judges position",
+    "crane.load_limiter.warning": "what the operator is told",
     "vessel.thrusters.2.position_m.1": "a tunnel thruster pushes along this lever",
 }
 TABLES = (("vessel", "hull", "current_table"), ("vessel", "wind_areas", "table"))
@@ -90,6 +91,7 @@ PATHS = list(numbers(busy()))
 
 def test_every_number_changes_the_run_or_is_listed():
     stages = {"busy": busy(), "weak": weak(), "slow": slow(), "long": at_ends(1), "short": at_ends(-1)}
+    stages |= {"coast": failing("coast"), "brake": failing("brake", 0.01), "leak": failing("hydraulic_failure")}
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):
@@ -97,6 +99,10 @@ def test_every_number_changes_the_run_or_is_listed():
         here, known = stages, digests
         if path[:-2] in TABLES:
             here, known = {path[-2]: flow_along_row(path, stages["busy"])}, {}
+        if path[:2] == ("crane", "load_chart"):
+            here, known = {"overloaded": overloaded(path[2])}, {}
+        elif path[:2] == ("crane", "load_limiter"):
+            here, known = {"overloaded": overloaded(3)}, {}
         if not matters(path, here, known):
             silent.append(".".join(map(str, path)))
     assert sorted(silent) == sorted(WITHOUT_EFFECT_ON_PHYSICS)

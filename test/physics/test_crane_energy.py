@@ -2,7 +2,15 @@
 
 import numpy as np
 import pytest
-from palfinger import GRAVITY, UP, eight_segment_chain, mixed_chain, mixed_telescopes, palfinger_actuators, palfinger_chain
+from palfinger import (
+    GRAVITY,
+    UP,
+    eight_segment_chain,
+    mixed_chain,
+    mixed_telescopes,
+    palfinger_actuators,
+    palfinger_chain,
+)
 from scipy.spatial.transform import Rotation
 
 from shipcrane_twin.physics.crane_actuators import POWER_ON, standing_state
