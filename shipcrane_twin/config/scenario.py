@@ -161,9 +161,9 @@ def crane_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     if len(crane.initial_joints) != count:
         names = ", ".join(scenario.joint_names)
         found.append((["crane", "initial_joints"], f"expected {count} values, one per joint ({names})"))
-    names = [*scenario.joint_names, WINCH]
+    taken = [*scenario.joint_names, WINCH]
     for i, name in enumerate(scenario.joint_names):
-        if names.count(name) > 1:
+        if taken.count(name) > 1:
             found.append((["crane", "links", i, "joint"], f"expected a name of its own; there is another {name}"))
         if bool(crane.links[i].segments) and crane.links[i].kind != "prismatic":
             found.append((["crane", "links", i, "segments"], "expected none: only a prismatic joint has segments"))

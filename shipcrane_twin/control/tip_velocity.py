@@ -88,5 +88,5 @@ def _damped_shares(part: Array, wanted: Array, damping: float) -> Array:
 def tip_joint_rates_level(
     chain: ChainParams, limits: MotionLimits, q: Array, velocity_w: Array, rot: Array
 ) -> Array:
-    """Return joint rates (n,) for a tip velocity (3,) against the ship given in world axes; rot (3, 3) is ship to world."""
+    """Return joint rates (n,) for a tip velocity (3,) against the ship, in world axes; rot (3, 3) is ship to world."""
     return tip_joint_rates(chain, limits, q, rotate_to_body(rot, velocity_w))

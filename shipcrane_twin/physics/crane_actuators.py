@@ -77,7 +77,7 @@ COLUMNS = 26
 
 @njit(cache=True)
 def joint_stiffness(actuators: ActuatorParams, drives: DriveParams, q: Array) -> tuple[Array, Array]:
-    """Return stiffness and damping (n,) of the joints at the pose q (n,) [N m/rad, N/m]: the oil's times arm squared."""
+    """Return stiffness and damping (n,) of the joints at q (n,) [N m/rad, N/m]: the oil's times arm squared."""
     kp, kd = np.empty(q.shape[0]), np.empty(q.shape[0])
     for i in range(q.shape[0]):
         arm = length_and_arm(drives, i, q[i])[1]

@@ -100,6 +100,8 @@ def make_chain(
         _check_inertia(tensors[link], f"inertia[{link}]")
         for number, segment in enumerate(trailing.get(link, ())):
             _check_inertia(np.asarray(segment.inertia), f"inertia of segment {number} of link {link}")
+        for segment in trailing.get(link, ()):
+            tensors[link] += np.asarray(segment.inertia)
     wrong = [link for link in trailing if not 0 <= link < joints or kind[link] != "prismatic"]
     if wrong:
         raise ValueError(f"chain: segments are given for link {wrong[0]}, expected the number of a prismatic joint")
@@ -109,7 +111,7 @@ def make_chain(
         kind=np.array([JOINT_KINDS[name] for name in kind], dtype=np.int64),
         mass=masses + [sum(segment.mass for segment in trailing.get(link, ())) for link in range(joints)],
         cog=_checked(cog, (joints, 3), "cog"),
-        inertia=tensors + [sum((np.asarray(s.inertia) for s in trailing.get(i, ())), np.zeros((3, 3))) for i in range(joints)],
+        inertia=tensors,
         segments=pack_segments(joints, trailing, handover),
     )
 

@@ -111,8 +111,8 @@ def gather_segments(
         Of the link with its segments [kg].
     i : int
     body : float64, shape (n, 9)
-        Row i: centre of gravity (3) [m] of the link alone, and xx, xy, xz, yy, yz, zz of link and segments each about its
-        own centre [kg m2]; becomes the common centre and the inertia about it.
+        Row i: centre of gravity (3) [m] of the link alone, and xx, xy, xz, yy, yz, zz of link and segments, each
+        about its own centre [kg m2]; becomes the common centre and the inertia about it.
     slide : float64, shape (n, 10)
         Row i is filled: sums over the segments of m r and m r (x, y, z), of m s'' and m s'' (x, y, z), of m r^2, and
         of m r s'', with r = ds/dq - 1.

@@ -110,7 +110,7 @@ def overloaded(row):
     data = busy()
     chart = data["crane"]["load_chart"]
     first = min(row, len(chart) - 2)
-    radius, safe = np.mean(chart[first : first + 2], axis=0)
+    radius = np.mean(chart[first : first + 2], axis=0)[0]
     scenario = load_scenario("case2")
     chain, q = crane_chain(scenario.crane), np.array(scenario.crane.initial_joints)
     if first < 2:  # near the pedestal, with the booms up

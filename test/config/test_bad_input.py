@@ -99,7 +99,10 @@ OVERRIDES = {
         "vessel.wind_areas.table.3.0=31.0",
         "expected directions from 0 to 180 degrees in equal steps in the first column",
     ),
-    "keys of another drive": ("crane.links.1.drive.kind=motor", "expected for kind motor the keys accel_max_rad_s2, brake_torque_n_m,"),
+    "keys of another drive": (
+        "crane.links.1.drive.kind=motor",
+        "expected for kind motor the keys accel_max_rad_s2, brake_torque_n_m,",
+    ),
 }
 
 

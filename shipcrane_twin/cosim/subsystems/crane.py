@@ -20,7 +20,7 @@ from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import NS_PER_S, seconds
-from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.arrays import Array, Ints
 from shipcrane_twin.physics.crane_actuators import POWER_BRAKE, POWER_COAST, POWER_LEAK, POWER_ON, standing_state
 from shipcrane_twin.physics.crane_base import base_motion, crane_macro_step, tip_odometry
 from shipcrane_twin.physics.crane_chain import tip_state
@@ -117,7 +117,7 @@ class Crane:
         )
         return self._outputs(k)
 
-    def _limit_load(self, force_w: Array) -> tuple[Array, Array]:
+    def _limit_load(self, force_w: Array) -> tuple[Ints, Array]:
         load = math.hypot(*force_w) / self._gravity
         q = self._state[: len(self._command)]
         self._load, mode, command = limit_load(
@@ -127,7 +127,7 @@ class Crane:
 
     @property
     def load_state(self) -> dict[str, float | bool]:
-        """What the operator is told of the load: hook load [kg], utilisation, warning, and whether hoisting is allowed."""
+        """What the operator is told: hook load [kg], utilisation, warning, and whether hoisting is allowed."""
         return {
             "hook_load_kg": float(self._load[LOAD]),
             "utilisation": float(self._load[UTILISATION]),
