@@ -71,6 +71,9 @@ class EventConfig:
         "power_limit",
         "dp_on",
         "dp_off",
+        "crane_coasts",
+        "crane_brakes",
+        "crane_leaks",
         "winch_coasts",
         "winch_brakes",
         "winch_leaks",
@@ -178,15 +181,19 @@ def time_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
 
 
 def crane_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
-    """Check that the crane has the joints that commands name, and a start value for each."""
+    """Check that every joint of the crane has a name of its own and a start value."""
     crane = scenario.crane
     count = len(crane.links)
     found: list[tuple[list[str | int], str]] = []
     if len(crane.initial_joints) != count:
         names = ", ".join(scenario.joint_names)
         found.append((["crane", "initial_joints"], f"expected {count} values, one per joint ({names})"))
-    if scenario.joint_names != ("slew", "boom", "knuckle", "telescope"):
-        found.append((["crane", "links"], "expected the joints slew, boom, knuckle, telescope in this order"))
+    taken = [*scenario.joint_names, WINCH]
+    for i, name in enumerate(scenario.joint_names):
+        if taken.count(name) > 1:
+            found.append((["crane", "links", i, "joint"], f"expected a name of its own; there is another {name}"))
+        if bool(crane.links[i].segments) and crane.links[i].kind != "prismatic":
+            found.append((["crane", "links", i, "segments"], "expected none: only a prismatic joint has segments"))
     return found
 
 

@@ -11,11 +11,15 @@ from shipcrane_twin.config.load import data_file
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.config.vessel import VesselConfig
+from shipcrane_twin.control.load_limiter import LoadLimiterParams, make_limiter
 from shipcrane_twin.hydro.database import HydroDatabase, moved
 from shipcrane_twin.hydro.files import load_database
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.crane_actuators import ActuatorParams
 from shipcrane_twin.physics.crane_chain import ChainParams, make_chain
 from shipcrane_twin.physics.crane_cylinders import DriveParams, LinearDrive, TriangleDrive, make_drives
+from shipcrane_twin.physics.crane_reference import MotionLimits, make_limits
+from shipcrane_twin.physics.crane_segments import Segment
 from shipcrane_twin.physics.frames import flu_matrix_from_frd
 from shipcrane_twin.physics.hull import HullParams
 from shipcrane_twin.physics.payload import WireParams
@@ -169,6 +173,12 @@ def crane_chain(crane: CraneConfig) -> ChainParams:
         mass=[link.mass_kg for link in crane.links],
         cog=[link.cog_m for link in crane.links],
         inertia=[symmetric(link.inertia_kg_m2) for link in crane.links],
+        segments={
+            i: [Segment(s.mass_kg, s.cog_m, symmetric(s.inertia_kg_m2), s.stroke_m) for s in link.segments]
+            for i, link in enumerate(crane.links)
+            if link.segments
+        },
+        handover=crane.segment_handover_m,
     )
 
 
@@ -185,6 +195,53 @@ def one_drive(drive: DriveConfig) -> LinearDrive | TriangleDrive:
     if drive.kind == "cylinder":
         return LinearDrive(drive.offset_m or 0.0, low, high)
     return TriangleDrive(drive.side_a_m or 0.0, drive.side_b_m or 0.0, drive.offset_rad or 0.0, low, high)
+
+
+def crane_limits(crane: CraneConfig, drives: DriveParams) -> MotionLimits:
+    """Return what the references of the crane's drives may do."""
+    each = [link.drive for link in crane.links]
+    return make_limits(
+        drives,
+        rate_max=[drive.speed_max for drive in each],
+        accel_max=[drive.of_kind("accel_max_rad_s2", "accel_max_m_s2") for drive in each],
+        jerk_max=[drive.of_kind("jerk_max_rad_s3", "jerk_max_m_s3") for drive in each],
+        end_margin=[drive.end_margin_m or 0.0 for drive in each],
+    )
+
+
+def crane_actuators(crane: CraneConfig) -> ActuatorParams:
+    """Return forces, oil and brakes of the crane's drives."""
+    each = [link.drive for link in crane.links]
+    stiffness = np.array([drive.of_kind("stiffness_n_m_per_rad", "stiffness_n_per_m") for drive in each])
+    areas = np.array([drive.areas for drive in each])
+    force = np.array([drive.of_kind("torque_max_n_m", "pressure_max_pa") for drive in each])
+    holding = np.array([drive.of_kind("brake_torque_n_m", "holding_pressure_pa") for drive in each])
+    leak = np.array([drive.of_kind("leak_rad_per_s_n_m", "leak_m3_per_s_pa") for drive in each])
+    return ActuatorParams(
+        stiffness=stiffness,
+        damping=stiffness * [drive.damping_time_s for drive in each],
+        push=force * areas[:, 0],
+        pull=force * areas[:, 1],
+        hold_push=holding * areas[:, 0],
+        hold_pull=holding * areas[:, 1],
+        friction=np.array([drive.of_kind("friction_n_m", "friction_n") for drive in each]),
+        leak_push=leak / areas[:, 0] ** 2,
+        leak_pull=leak / areas[:, 1] ** 2,
+        tracking=crane.servo.tracking_rate_1_s,
+    )
+
+
+def load_limiter(scenario: Scenario) -> LoadLimiterParams:
+    """Return the overload limiter of the crane."""
+    limiter = scenario.crane.load_limiter
+    return make_limiter(
+        scenario.crane.load_chart,
+        warning=limiter.warning,
+        cut_out=limiter.cut_out,
+        release=limiter.release,
+        filter_s=limiter.filter_s,
+        step_s=scenario.step_ns / 1e9,
+    )
 
 
 def wire_params(scenario: Scenario) -> WireParams:

@@ -7,17 +7,17 @@ import numpy as np
 
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.config.settings import ConfigError, nearest
-from shipcrane_twin.cosim.build import crane_chain, crane_drives
+from shipcrane_twin.cosim.build import crane_actuators, crane_chain, crane_drives
 from shipcrane_twin.cosim.controllers import check_controllers, own_chain_of
 from shipcrane_twin.cosim.coupling import CHAIN, SCHEMES
 from shipcrane_twin.cosim.initial import Rest, at_rest
 from shipcrane_twin.cosim.subsystems import make_subsystem
 from shipcrane_twin.cosim.topics import THRUSTERS
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.crane_actuators import joint_stiffness
 from shipcrane_twin.physics.crane_chain import ChainParams
-from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
+from shipcrane_twin.physics.crane_cylinders import joint_rates_per_length, joints_from_lengths
 from shipcrane_twin.physics.crane_dynamics import bias_forces, mass_matrix
-from shipcrane_twin.physics.crane_motion import servo_gains
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
 
 RK4_REACH = 2.5
@@ -69,15 +69,17 @@ def check_strength(scenario: Scenario, chain: ChainParams, rest: Rest) -> None:
     proper_b = scenario.constants.gravity_m_s2 * rot[2]
     force_b = rotate_to_body(rot, rest.wire_force_w)
     efforts = bias_forces(chain, rest.joints, np.zeros_like(rest.joints), still, still, proper_b, force_b)
-    for link, effort in zip(scenario.crane.links, efforts, strict=True):
-        if abs(effort) > link.drive.effort_max:
+    actuators = crane_actuators(scenario.crane)
+    forces = efforts * joint_rates_per_length(crane_drives(scenario.crane), rest.joints)
+    limits = np.where(forces > 0.0, actuators.push, actuators.pull)
+    for link, force, limit in zip(scenario.crane.links, forces, limits, strict=True):
+        if abs(force) > limit:
             raise ConfigError(
-                f"{scenario.name}: the {link.joint} needs {abs(effort):.3g} to hold crane and load at the start, but "
-                f"its effort_max is {link.drive.effort_max:.3g}; lighten the load "
+                f"{scenario.name}: the {link.joint} needs {abs(force):.3g} to hold crane and load at the start, but "
+                f"its drive has {limit:.3g}; lighten the load "
                 f"(payload.mass_kg = {scenario.payload.mass_kg:g}), shorten the radius (crane.initial_joints) or "
                 "strengthen the drive"
             )
-
 
 
 def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> None:
@@ -92,13 +94,15 @@ def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> Non
     """
     crane = scenario.crane
     start = np.array(crane.initial_joints)
-    frequencies = [link.drive.servo_frequency_hz for link in crane.links]
-    kp, kd = servo_gains(chain, start, frequencies, crane.servo.damping_ratio)
+    actuators, drives = crane_actuators(crane), crane_drives(crane)
     postures = [
         np.linspace(low, high, 5) if math.isfinite(high - low) else [value]
         for low, high, value in zip(*ends, start, strict=True)
     ]
-    fastest = max(servo_rate(chain, np.array(posture), kp, kd) for posture in itertools.product(*postures))
+    fastest = 0.0
+    for posture in itertools.product(*postures):
+        stiffness, damping = joint_stiffness(actuators, drives, np.array(posture))
+        fastest = max(fastest, servo_rate(chain, np.array(posture), stiffness, damping))
     step_ms = scenario.macro_step_ms / math.ceil(scenario.macro_step_ms / crane.servo.micro_step_max_ms)
     allowed_ms = 1e3 * RK4_REACH / fastest
     if step_ms > allowed_ms:
@@ -108,12 +112,12 @@ def check_servo_step(scenario: Scenario, chain: ChainParams, ends: Array) -> Non
         )
 
 
-def servo_rate(chain: ChainParams, q: Array, kp: Array, kd: Array) -> float:
-    """Return the largest rate |lambda| [1/s] of ``M q'' + kd q' + kp q = 0`` at a posture."""
+def servo_rate(chain: ChainParams, q: Array, stiffness: Array, damping: Array) -> float:
+    """Return the largest rate |lambda| [1/s] of ``M q'' + damping q' + stiffness q = 0`` at a posture."""
     n = len(q)
     inverse = np.linalg.inv(mass_matrix(chain, q))
     system = np.zeros((2 * n, 2 * n))
     system[:n, n:] = np.eye(n)
-    system[n:, :n] = -inverse * kp
-    system[n:, n:] = -inverse * kd
+    system[n:, :n] = -inverse * stiffness
+    system[n:, n:] = -inverse * damping
     return float(np.abs(np.linalg.eigvals(system)).max())

@@ -34,6 +34,9 @@ from shipcrane_twin.physics.sensors import (
 )
 from shipcrane_twin.physics.wind import wind_load
 
+EVENTS = ("thruster_fault", "sensor_fault", "power_limit", "dp_on", "dp_off")
+"""The scenario's events that concern DP."""
+
 IDLE_SHARE = 0.01
 """Of `load_max`: a demand below it while DP is off leaves the thrusters idle."""
 
@@ -131,7 +134,7 @@ class Positioning:
         later = sorted(dp.setpoints, key=attrgetter("at_s"))
         self._setpoints += [(round(point.at_s * NS_PER_S), self._pose_of(point)) for point in later]
         self.faults = DpFaults([thruster.name for thruster in scenario.vessel.thrusters])
-        own = (event for event in scenario.events if event.event != "release_payload")
+        own = (event for event in scenario.events if event.event in EVENTS)
         self._events = sorted(own, key=attrgetter("at_s"))
 
     @staticmethod

@@ -7,9 +7,10 @@ origin and angular velocity in base_link axes. crane_base has the same axes and 
 import numpy as np
 from numba import njit
 
-from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.arrays import Array, Ints
+from shipcrane_twin.physics.crane_actuators import ActuatorParams
 from shipcrane_twin.physics.crane_chain import ChainParams
-from shipcrane_twin.physics.crane_motion import ServoParams, crane_step
+from shipcrane_twin.physics.crane_motion import crane_step
 from shipcrane_twin.physics.crane_reference import MotionLimits
 from shipcrane_twin.physics.frames import (
     cross,
@@ -73,12 +74,14 @@ def tip_odometry(tip_b: Array, odom: Array, base_b: Array) -> Array:
 @njit(cache=True)
 def crane_macro_step(
     chain: ChainParams,
-    servo: ServoParams,
+    actuators: ActuatorParams,
     limits: MotionLimits,
     base_b: Array,
     gravity: float,
     state: Array,
+    mode: Ints,
     command: Array,
+    power: int,
     before: Array,
     odom: Array,
     accel: Array,
@@ -86,16 +89,16 @@ def crane_macro_step(
     felt_mass: float,
     n_micro: int,
     step_s: float,
-) -> tuple[Array, Array, Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array, Array, Array, Ints]:
     """Move the crane over one macro step on the moving ship.
 
     Parameters
     ----------
-    chain, servo, limits : ChainParams, ServoParams, MotionLimits
+    chain, actuators, limits : ChainParams, ActuatorParams, MotionLimits
     base_b : float64, shape (3,)
     gravity : float
         [m/s2].
-    state, command : float64, shapes (4 n,), (n,)
+    state, mode, command, power
         See `crane_motion.crane_step`.
     before : float64, shape (16,)
         At the step's start: quaternion of the ship, `base_motion`, and the tip's mean proper acceleration
@@ -111,7 +114,7 @@ def crane_macro_step(
 
     Returns
     -------
-    state, effort : float64, shapes (4 n,), (n,)
+    state, effort : float64, shapes (7 n,), (n,)
         At the end of the step.
     wrench_b : float64, shape (6,)
         Mean over the step of crane and load on the ship at crane_base.
@@ -121,6 +124,8 @@ def crane_macro_step(
         The crane as one rigid body at the end of the step.
     after : float64, shape (16,)
         ``before`` of the next step.
+    flags : int64, shape (n,)
+        See `crane_motion.crane_step`.
     """
     after = np.empty(16)
     after[:4] = odom[3:7]
@@ -132,11 +137,11 @@ def crane_macro_step(
         base[9:12] = rotate_to_body(rot, force_w)
         base[12:15] = rotate_to_body(rot, before[13:])
         base[15] = felt_mass
-    new, wrench_b, effort, _, tip_b, inertia, tip_acc_b = crane_step(
-        chain, servo, limits, state, command, start, end, n_micro, step_s
+    new, wrench_b, effort, flags, tip_b, inertia, tip_acc_b = crane_step(
+        chain, actuators, limits, state, mode, command, power, start, end, n_micro, step_s
     )
     after[13:] = 0.5 * (rotate_to_world(rot_start, tip_acc_b) + rotate_to_world(rot_end, tip_acc_b))
-    return new, effort, wrench_b, tip_odometry(tip_b, odom, base_b), inertia, after
+    return new, effort, wrench_b, tip_odometry(tip_b, odom, base_b), inertia, after, flags
 
 
 @njit(cache=True)

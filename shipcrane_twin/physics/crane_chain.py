@@ -6,16 +6,15 @@ several links add up as they are and no spatial transforms are needed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from shipcrane_twin.physics.arrays import Array
-
-Ints = NDArray[np.int64]
+from shipcrane_twin.physics.arrays import Array, Ints
+from shipcrane_twin.physics.crane_segments import Segment, SegmentParams, pack_segments
 
 REVOLUTE = 0
 PRISMATIC = 1
@@ -35,11 +34,13 @@ class ChainParams(NamedTuple):
     kind : int64, shape (n,)
         REVOLUTE: the joint value adds to theta; PRISMATIC: it adds to d.
     mass : float64, shape (n,)
-        Link masses [kg].
+        Link masses with their segments [kg].
     cog : float64, shape (n, 3)
-        Link centres of gravity in their own link frames [m].
+        Link centres of gravity in their own link frames, without segments [m].
     inertia : float64, shape (n, 3, 3)
-        Link inertias about those centres, in link axes [kg m2].
+        Link inertias about those centres, in link axes [kg m2]; those of segments about their own are added.
+    segments : SegmentParams
+        Telescope segments that trail behind their link; none on most links.
     """
 
     dh: Array
@@ -48,6 +49,7 @@ class ChainParams(NamedTuple):
     mass: Array
     cog: Array
     inertia: Array
+    segments: SegmentParams
 
 
 def make_chain(
@@ -57,6 +59,8 @@ def make_chain(
     mass: ArrayLike,
     cog: ArrayLike,
     inertia: ArrayLike,
+    segments: Mapping[int, Sequence[Segment]] | None = None,
+    handover: float = 0.1,
 ) -> ChainParams:
     """Check and pack the description of a chain.
 
@@ -67,7 +71,11 @@ def make_chain(
     kind : sequence of n str
         "revolute" or "prismatic".
     mass, cog, inertia : array_like, shapes (n,), (n, 3), (n, 3, 3)
-        As in `ChainParams`.
+        As in `ChainParams`; of a telescope, those of its last segment, which the tip is on.
+    segments : mapping of link number to sequence of Segment, optional
+        The other segments of telescopes, the outermost first, see `crane_segments`.
+    handover : float
+        Stroke over which one segment stops and the next starts [m].
 
     Raises
     ------
@@ -87,15 +95,24 @@ def make_chain(
         worst = int(np.argmin(masses))
         raise ValueError(f"chain: mass[{worst}] is {masses[worst]} kg, expected > 0")
     tensors = _checked(inertia, (joints, 3, 3), "inertia")
+    trailing = dict(segments or {})
     for link in range(joints):
-        _check_inertia(tensors[link], link)
+        _check_inertia(tensors[link], f"inertia[{link}]")
+        for number, segment in enumerate(trailing.get(link, ())):
+            _check_inertia(np.asarray(segment.inertia), f"inertia of segment {number} of link {link}")
+        for segment in trailing.get(link, ()):
+            tensors[link] += np.asarray(segment.inertia)
+    wrong = [link for link in trailing if not 0 <= link < joints or kind[link] != "prismatic"]
+    if wrong:
+        raise ValueError(f"chain: segments are given for link {wrong[0]}, expected the number of a prismatic joint")
     return ChainParams(
         dh=rows,
         twist=np.column_stack((np.cos(rows[:, 1]), np.sin(rows[:, 1]))),
         kind=np.array([JOINT_KINDS[name] for name in kind], dtype=np.int64),
-        mass=masses,
+        mass=masses + [sum(segment.mass for segment in trailing.get(link, ())) for link in range(joints)],
         cog=_checked(cog, (joints, 3), "cog"),
         inertia=tensors,
+        segments=pack_segments(joints, trailing, handover),
     )
 
 
@@ -108,14 +125,14 @@ def _checked(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:
     return array
 
 
-def _check_inertia(tensor: Array, link: int) -> None:
+def _check_inertia(tensor: Array, name: str) -> None:
     size = float(np.max(np.abs(tensor)))
     if not np.allclose(tensor, tensor.T, rtol=0.0, atol=1e-9 * size):
-        raise ValueError(f"chain: inertia[{link}] is not symmetric")
+        raise ValueError(f"chain: {name} is not symmetric")
     low, mid, high = np.linalg.eigvalsh(tensor)
     if low < -1e-9 * size or low + mid < high * (1.0 - 1e-9):
         raise ValueError(
-            f"chain: inertia[{link}] has principal values {low:.6g}, {mid:.6g}, {high:.6g} kg m2; expected "
+            f"chain: {name} has principal values {low:.6g}, {mid:.6g}, {high:.6g} kg m2; expected "
             "none negative and none greater than the sum of the others"
         )
 

@@ -13,8 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.physics.crane_chain import Ints
+from shipcrane_twin.physics.arrays import Array, Ints
 
 LINEAR = 0
 TRIANGLE = 1
@@ -100,16 +99,22 @@ def joints_from_lengths(drives: DriveParams, lengths: Array) -> Array:
     """
     q = np.empty(lengths.shape[0])
     for i in range(lengths.shape[0]):
-        q[i] = drives.offset[i]
-        if drives.kind[i] == TRIANGLE:
-            a, b = drives.side_a[i], drives.side_b[i]
-            cosine = (a * a + b * b - lengths[i] * lengths[i]) / (2.0 * a * b)
-            if not (-1.0 <= cosine <= 1.0) or lengths[i] < 0.0:
-                raise ValueError("crane: a cylinder length cannot close its triangle")
-            q[i] += np.arccos(cosine)
-        else:
-            q[i] += lengths[i]
+        q[i] = joint_at(drives, i, lengths[i])
+        if not (q[i] == q[i]) and lengths[i] == lengths[i]:
+            raise ValueError("crane: a cylinder length cannot close its triangle")
     return q
+
+
+@njit(cache=True)
+def joint_at(drives: DriveParams, i: int, length: float) -> float:
+    """Return the joint value of drive i at that length; NaN if a cylinder cannot close its triangle."""
+    if drives.kind[i] == LINEAR:
+        return drives.offset[i] + length
+    a, b = drives.side_a[i], drives.side_b[i]
+    cosine = (a * a + b * b - length * length) / (2.0 * a * b)
+    if not (-1.0 <= cosine <= 1.0) or length < 0.0:
+        return np.nan
+    return drives.offset[i] + np.arccos(cosine)
 
 
 @njit(cache=True)
@@ -117,10 +122,7 @@ def lengths_from_joints(drives: DriveParams, q: Array) -> Array:
     """Return actuator lengths (n,) for joint values (n,); inverse of `joints_from_lengths`."""
     lengths = np.empty(q.shape[0])
     for i in range(q.shape[0]):
-        lengths[i] = q[i] - drives.offset[i]
-        if drives.kind[i] == TRIANGLE:
-            a, b = drives.side_a[i], drives.side_b[i]
-            lengths[i] = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(lengths[i]))
+        lengths[i] = length_and_arm(drives, i, q[i])[0]
     return lengths
 
 
@@ -131,11 +133,26 @@ def joint_rates_per_length(drives: DriveParams, q: Array) -> Array:
     Joint rate = this times cylinder speed; cylinder force = this times joint torque (equal power).
     It grows without bound as the triangle folds flat.
     """
-    rates = np.ones(q.shape[0])
+    rates = np.empty(q.shape[0])
     for i in range(q.shape[0]):
-        if drives.kind[i] == TRIANGLE:
-            a, b = drives.side_a[i], drives.side_b[i]
-            angle = q[i] - drives.offset[i]
-            length = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
-            rates[i] = length / (a * b * np.sin(angle))
+        rates[i] = 1.0 / length_and_arm(drives, i, q[i])[1]
     return rates
+
+
+@njit(cache=True)
+def length_and_arm(drives: DriveParams, i: int, q: float) -> tuple[float, float]:
+    """Return length and effective lever arm d(length)/d(joint) [m/rad] of drive i at the joint value q.
+
+    Joint torque = arm times cylinder force; cylinder speed = arm times joint rate.
+    """
+    angle = q - drives.offset[i]
+    if drives.kind[i] == LINEAR:
+        return angle, 1.0
+    return triangle(drives.side_a[i], drives.side_b[i], angle)
+
+
+@njit(cache=True)
+def triangle(a: float, b: float, angle: float) -> tuple[float, float]:
+    """Return the side opposite an angle [rad] between sides a and b [m], and its derivative over the angle [m/rad]."""
+    length = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
+    return length, a * b * np.sin(angle) / length

@@ -18,7 +18,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, joint_count
-from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links, project_row, store_row
+from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links, project_row, slide_moment, store_row
 
 
 @njit(cache=True)
@@ -48,9 +48,20 @@ def fill_mass_matrix(chain: ChainParams, work: ChainWork) -> None:
         lx = jxx * wx + jxy * wy + jxz * wz + hy * vz - hz * vy
         ly = jxy * wx + jyy * wy + jyz * wz + hz * vx - hx * vz
         lz = jxz * wx + jyz * wy + jzz * wz + hx * vy - hy * vx
+        extra = 0.0
+        if work.slide[i, 0] != 0.0:
+            # trailing segments move by r = ds/dq - 1 per unit rate against their link
+            r = work.slide[i, 0]
+            ux, uy, uz = slide_moment(work.slide, work.rotation_b, work.origin_b, i, 0)
+            ux, uy, uz = cross(ux, uy, uz, vx, vy, vz)
+            px, py, pz = px + r * vx, py + r * vy, pz + r * vz
+            lx, ly, lz = lx + ux, ly + uy, lz + uz
+            extra = r + work.slide[i, 8]
         store_row(work.momentum_b, i, px, py, pz, lx, ly, lz)
         for k in range(i + 1):
             element = project_row(work.screw_b, k, px, py, pz, lx, ly, lz)
+            if k == i:
+                element += extra
             work.mass_matrix[i, k] = element
             work.mass_matrix[k, i] = element
 
@@ -86,10 +97,47 @@ def fill_bias(chain: ChainParams, qd: Array, base: Array, work: ChainWork) -> No
         gx, gy, gz = cross(wx, wy, wz, lx, ly, lz)
         cx, cy, cz = cross(cx, cy, cz, kx, ky, kz)
         store_row(work.wrench_b, i, kx, ky, kz, ux + gx + cx, uy + gy + cy, uz + gz + cz)
+        work.bias[i] = 0.0
+        store_row(work.motion_b, i, wx, wy, wz, ax, ay, az)
+        work.motion_b[i, 6], work.motion_b[i, 7], work.motion_b[i, 8] = fx, fy, fz
     tx, ty, tz = work.origin_b[joints, 0], work.origin_b[joints, 1], work.origin_b[joints, 2]
     sx, sy, sz = _swing(wx, wy, wz, ax, ay, az, tx - px, ty - py, tz - pz)
     work.tip_acc_b[0], work.tip_acc_b[1], work.tip_acc_b[2] = fx + sx, fy + sy, fz + sz
+    _add_slides(joints, qd, work)
     _gather_inward(joints, base, work)
+
+
+@njit(cache=True)
+def _add_slides(joints: int, qd: Array, work: ChainWork) -> None:
+    """Add to wrenches and bias what the segments of telescopes differ from a rigid link.
+
+    Against the link, a segment has the acceleration ``2 w x z r qd + z s'' qd^2`` along the telescope's axis z, and
+    the joint feels its force times ``ds/dq = 1 + r``.
+    """
+    slide, rotation_b, origin_b, motion_b = work.slide, work.rotation_b, work.origin_b, work.motion_b
+    for i in range(joints):
+        r, b, rate = slide[i, 0], slide[i, 4], qd[i]
+        if r == 0.0:
+            continue
+        wx, wy, wz = motion_b[i, 0], motion_b[i, 1], motion_b[i, 2]
+        zx, zy, zz = rotation_b[i, 0, 2], rotation_b[i, 1, 2], rotation_b[i, 2, 2]
+        gx, gy, gz = cross(wx, wy, wz, zx, zy, zz)
+        gx, gy, gz = 2.0 * rate * gx, 2.0 * rate * gy, 2.0 * rate * gz
+        bx, by, bz = rate * rate * zx, rate * rate * zy, rate * rate * zz
+        rx, ry, rz = slide_moment(slide, rotation_b, origin_b, i, 0)
+        cx, cy, cz = cross(rx, ry, rz, gx, gy, gz)
+        sx, sy, sz = slide_moment(slide, rotation_b, origin_b, i, 4)
+        dx, dy, dz = cross(sx, sy, sz, bx, by, bz)
+        work.wrench_b[i, 0] += r * gx + b * bx
+        work.wrench_b[i, 1] += r * gy + b * by
+        work.wrench_b[i, 2] += r * gz + b * bz
+        work.wrench_b[i, 3] += cx + dx
+        work.wrench_b[i, 4] += cy + dy
+        work.wrench_b[i, 5] += cz + dz
+        rx, ry, rz = rx - r * origin_b[i, 0], ry - r * origin_b[i, 1], rz - r * origin_b[i, 2]
+        sx, sy, sz = _swing(wx, wy, wz, motion_b[i, 3], motion_b[i, 4], motion_b[i, 5], rx, ry, rz)
+        sx, sy, sz = sx + r * motion_b[i, 6], sy + r * motion_b[i, 7], sz + r * motion_b[i, 8]
+        work.bias[i] = zx * sx + zy * sy + zz * sz + slide[i, 9] * rate * rate
 
 
 @njit(cache=True)
@@ -124,7 +172,7 @@ def _gather_inward(joints: int, base: Array, work: ChainWork) -> None:
         fx, fy, fz = fx + work.wrench_b[i, 0], fy + work.wrench_b[i, 1], fz + work.wrench_b[i, 2]
         mx, my, mz = mx + work.wrench_b[i, 3], my + work.wrench_b[i, 4], mz + work.wrench_b[i, 5]
         store_row(work.wrench_b, i, fx, fy, fz, mx, my, mz)
-        work.bias[i] = project_row(work.screw_b, i, fx, fy, fz, mx, my, mz)
+        work.bias[i] += project_row(work.screw_b, i, fx, fy, fz, mx, my, mz)
 
 
 @njit(cache=True)

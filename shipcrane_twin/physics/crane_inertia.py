@@ -8,7 +8,7 @@ from numba import njit
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, joint_count
 from shipcrane_twin.physics.crane_dynamics import bias_forces
-from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links
+from shipcrane_twin.physics.crane_links import ChainWork, new_work, place_links, slide_moment
 
 
 @njit(cache=True)
@@ -90,6 +90,13 @@ def kinetic_energy(chain: ChainParams, q: Array, qd: Array, v0: Array, w0: Array
         energy += 0.5 * chain.mass[i] * (ux * ux + uy * uy + uz * uz)
         energy += 0.5 * (t[0] * wx * wx + t[3] * wy * wy + t[5] * wz * wz)
         energy += t[1] * wx * wy + t[2] * wx * wz + t[4] * wy * wz
+        if work.slide[i, 0] != 0.0:
+            # segments that trail: m r qd z against the velocity that they would have with their link
+            hx, hy, hz = slide_moment(work.slide, work.rotation_b, work.origin_b, i, 0)
+            ux, uy, uz = cross(wx, wy, wz, hx, hy, hz)
+            r = work.slide[i, 0]
+            energy += qd[i] * (s[0] * (r * vx + ux) + s[1] * (r * vy + uy) + s[2] * (r * vz + uz))
+            energy += 0.5 * work.slide[i, 8] * qd[i] * qd[i]
     return energy
 
 

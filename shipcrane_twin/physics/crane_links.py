@@ -9,6 +9,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, place_frames
+from shipcrane_twin.physics.crane_segments import gather_segments
 
 
 class ChainWork(NamedTuple):
@@ -38,6 +39,12 @@ class ChainWork(NamedTuple):
         Proper acceleration of the tip while all joint accelerations are zero [m/s2].
     bias : float64, shape (n,)
         Joint efforts needed at zero joint acceleration.
+    body : float64, shape (n, 9)
+        Centre (3) and inertia about it (6) of each link with its segments, in its own frame.
+    slide : float64, shape (n, 10)
+        How the segments of each link trail behind it, see `crane_segments.gather_segments`.
+    motion_b : float64, shape (n, 9)
+        Angular velocity and acceleration of each link, and proper acceleration of its origin, in base axes.
     """
 
     rotation_b: Array
@@ -50,6 +57,9 @@ class ChainWork(NamedTuple):
     mass_matrix: Array
     tip_acc_b: Array
     bias: Array
+    body: Array
+    slide: Array
+    motion_b: Array
 
 
 @njit(cache=True)
@@ -66,6 +76,9 @@ def new_work(joints: int) -> ChainWork:
         np.zeros((joints, joints)),
         np.zeros(3),
         np.zeros(joints),
+        np.zeros((joints, 9)),
+        np.zeros((joints, 10)),
+        np.zeros((joints, 9)),
     )
 
 
@@ -73,16 +86,16 @@ def new_work(joints: int) -> ChainWork:
 def place_links(chain: ChainParams, q: Array, work: ChainWork) -> None:
     """Fill frames, centres of gravity, inertias and joint screws of `work` for the pose q (n,)."""
     place_frames(chain, q, work.rotation_b, work.origin_b)
+    _gather_bodies(chain, q, work.body, work.slide)
     for i in range(chain.kind.shape[0]):
-        c0, c1, c2 = chain.cog[i, 0], chain.cog[i, 1], chain.cog[i, 2]
         for k in range(3):
             work.cog_b[i, k] = (
                 work.origin_b[i, k]
-                + work.rotation_b[i, k, 0] * c0
-                + work.rotation_b[i, k, 1] * c1
-                + work.rotation_b[i, k, 2] * c2
+                + work.rotation_b[i, k, 0] * work.body[i, 0]
+                + work.rotation_b[i, k, 1] * work.body[i, 1]
+                + work.rotation_b[i, k, 2] * work.body[i, 2]
             )
-        _turn_inertia(work.rotation_b, chain.inertia, work.inertia_b, i)
+        _turn_inertia(work.rotation_b, work.body, work.inertia_b, i)
         zx, zy, zz = work.rotation_b[i, 0, 2], work.rotation_b[i, 1, 2], work.rotation_b[i, 2, 2]
         if chain.kind[i] == REVOLUTE:
             ux, uy, uz = cross(work.origin_b[i, 0], work.origin_b[i, 1], work.origin_b[i, 2], zx, zy, zz)
@@ -109,10 +122,41 @@ def project_row(rows: Array, i: int, a: float, b: float, c: float, d: float, e: 
 
 
 @njit(cache=True)
-def _turn_inertia(rotation: Array, tensor: Array, out: Array, i: int) -> None:
-    """Write R J R^T of link i as xx, xy, xz, yy, yz, zz."""
-    jxx, jxy, jxz = tensor[i, 0, 0], tensor[i, 0, 1], tensor[i, 0, 2]
-    jyy, jyz, jzz = tensor[i, 1, 1], tensor[i, 1, 2], tensor[i, 2, 2]
+def _gather_bodies(chain: ChainParams, q: Array, body: Array, slide: Array) -> None:
+    """Fill bodies (n, 9) and slides (n, 10) of all links with their segments; see `ChainWork`."""
+    for i in range(chain.kind.shape[0]):
+        for k in range(3):
+            body[i, k] = chain.cog[i, k]
+            body[i, 3 + k] = chain.inertia[i, 0, k]
+        body[i, 6], body[i, 7], body[i, 8] = chain.inertia[i, 1, 1], chain.inertia[i, 1, 2], chain.inertia[i, 2, 2]
+    first = chain.segments.first
+    for i in range(chain.kind.shape[0]):
+        if first[i + 1] > first[i]:
+            rows, handover = chain.segments.rows, chain.segments.handover
+            gather_segments(rows, first[i], first[i + 1], handover, q[i], chain.mass[i], i, body, slide)
+
+
+@njit(cache=True)
+def slide_moment(slide: Array, r: Array, origin: Array, i: int, first: int) -> tuple[float, float, float]:
+    """Return a sum over segments of link i, weight times place, in base axes from the base origin.
+
+    ``first`` is the column of ``slide`` (n, 10) that holds the sum of the weights; three for the places follow.
+    r (n + 1, 3, 3) and origin (n + 1, 3) are the frames of `ChainWork`: whole, it would cost reference counting.
+    """
+    s = slide[i, first]
+    x, y, z = slide[i, first + 1], slide[i, first + 2], slide[i, first + 3]
+    return (
+        s * origin[i, 0] + r[i, 0, 0] * x + r[i, 0, 1] * y + r[i, 0, 2] * z,
+        s * origin[i, 1] + r[i, 1, 0] * x + r[i, 1, 1] * y + r[i, 1, 2] * z,
+        s * origin[i, 2] + r[i, 2, 0] * x + r[i, 2, 1] * y + r[i, 2, 2] * z,
+    )
+
+
+@njit(cache=True)
+def _turn_inertia(rotation: Array, body: Array, out: Array, i: int) -> None:
+    """Write R J R^T of link i as xx, xy, xz, yy, yz, zz; J is in body[i, 3:9]."""
+    jxx, jxy, jxz = body[i, 3], body[i, 4], body[i, 5]
+    jyy, jyz, jzz = body[i, 6], body[i, 7], body[i, 8]
     ax, ay, az = rotation[i, 0, 0], rotation[i, 0, 1], rotation[i, 0, 2]
     bx, by, bz = rotation[i, 1, 0], rotation[i, 1, 1], rotation[i, 1, 2]
     cx, cy, cz = rotation[i, 2, 0], rotation[i, 2, 1], rotation[i, 2, 2]

@@ -2,9 +2,12 @@
 
 import copy
 
+import numpy as np
+
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.config.settings import plain
-from shipcrane_twin.cosim.build import crane_drives
+from shipcrane_twin.control.load_limiter import radius_and_slopes, safe_working_load
+from shipcrane_twin.cosim.build import crane_chain, crane_drives, load_limiter
 from shipcrane_twin.physics.crane_cylinders import joints_from_lengths
 
 MOVES = {
@@ -102,8 +105,8 @@ def busy():
 def weak():
     """Drives too weak for what is asked of them, and a controller that may hardly ask."""
     data = busy()
-    for link, effort in zip(data["crane"]["links"], (50.0, 1e4, 5e3, 1e3), strict=True):
-        link["drive"]["effort_max"] = effort
+    for link, limit in zip(data["crane"]["links"], (50.0, 1e6, 1e6, 1e5), strict=True):
+        link["drive"]["torque_max_n_m" if link["drive"]["kind"] == "motor" else "pressure_max_pa"] = limit
     data["dp"]["controller"]["load_max"] = [1.0, 1.0, 10.0]
     winch = data["winch"]
     winch["length_max_m"] = 80.0
@@ -116,6 +119,36 @@ def without_power(event):
     """The winch loses its motor."""
     data = busy()
     data["events"] = [{"label": "fault", "at_s": 0.2, "event": event}]
+    return data
+
+
+def failing(event, share=1.0):
+    """All drives lose their power at work; their brakes have a share of their force."""
+    data = busy()
+    data["events"].append({"label": "power", "at_s": 0.3, "event": event})
+    for link in data["crane"]["links"]:
+        key = "brake_torque_n_m" if link["drive"]["kind"] == "motor" else "holding_pressure_pa"
+        link["drive"][key] *= share
+    return data
+
+
+def overloaded(row):
+    """A load that the limiter just cuts out, at a radius between a row of the load chart and a neighbour."""
+    data = busy()
+    chart = data["crane"]["load_chart"]
+    first = min(row, len(chart) - 2)
+    radius = np.mean(chart[first : first + 2], axis=0)[0]
+    scenario = load_scenario("case2")
+    chain, q = crane_chain(scenario.crane), np.array(scenario.crane.initial_joints)
+    if first < 2:  # near the pedestal, with the booms up
+        q[1:3] = 0.8, 0.2
+    where = np.linspace(0.0, 10.0, 400)
+    radii = [radius_and_slopes(chain, np.array([*q[:3], x]))[0] for x in where]
+    q[3] = where[np.argmin(np.abs(np.array(radii) - radius))]
+    data["crane"]["initial_joints"] = q.tolist()
+    limiter = load_limiter(scenario)
+    load = 1.1 * safe_working_load(limiter, radius_and_slopes(chain, q)[0])
+    data["payload"]["mass_kg"] = float(load * 0.9995)
     return data
 
 

@@ -62,7 +62,6 @@ OVERRIDES = {
         "crane.initial_joints=[1.0, 2.0]",
         "crane.initial_joints is [1.0, 2.0], expected 4 values, one per joint (slew, boom, knuckle, telescope)",
     ),
-    "joints in another order": ("crane.links.0.joint=turn", "expected the joints slew, boom, knuckle, telescope"),
     "unit clash of sensors": ("dp.sensors.gyro.noise_std_rad=0.1", "unit clash: this setting is noise_std_deg"),
     "no such observer": ("dp.observer.kind=kalman", "kind is 'kalman', expected 'passive', 'ekf' or 'none'"),
     "no such thruster": (
@@ -109,6 +108,7 @@ OVERRIDES = {
         "winch.drum.wire_length_m is 50.0, expected at least winch.length_max_m = 100",
     ),
     "shape without its group": ("payload.shape=box", "expected the group box with shape: box, and only then"),
+    "two joints of one name": ("crane.links.0.joint=boom", "expected a name of its own; there is another boom"),
     "wire beyond the drum": (
         "winch.initial_length_m=200.0",
         "winch.initial_length_m is 200.0, expected a length within the winch's limits, 0.2 to 100",
@@ -145,7 +145,10 @@ OVERRIDES = {
         "vessel.wind_areas.table.3.0=31.0",
         "expected directions from 0 to 180 degrees in equal steps in the first column",
     ),
-    "keys of another drive": ("crane.links.1.drive.kind=motor", "expected for kind motor the keys speed_max_rad_s and"),
+    "keys of another drive": (
+        "crane.links.1.drive.kind=motor",
+        "expected for kind motor the keys accel_max_rad_s2, brake_torque_n_m,",
+    ),
 }
 
 

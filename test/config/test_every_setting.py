@@ -3,7 +3,20 @@
 import copy
 
 import pytest
-from busy_scenario import at_ends, busy, filtered, flow_along_row, hungry, look, put, slow, weak, without_power
+from busy_scenario import (
+    at_ends,
+    busy,
+    failing,
+    filtered,
+    flow_along_row,
+    hungry,
+    look,
+    overloaded,
+    put,
+    slow,
+    weak,
+    without_power,
+)
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
@@ -21,6 +34,7 @@ WITHOUT_EFFECT_ON_PHYSICS = {
     "dp.settled_after_s": "from when the summary judges position",
     "vessel.thrusters.2.azimuth_rate_max_deg_s": "a tunnel thruster does not turn",
     "vessel.thrusters.2.azimuth_lag_s": "the same",
+    "crane.load_limiter.warning": "what the operator is told",
 }
 TABLES = (("vessel", "hull", "current_table"), ("vessel", "wind_areas", "table"))
 
@@ -93,6 +107,7 @@ STAGES |= {"long": at_ends(1), "short": at_ends(-1)}
 
 def test_every_number_changes_the_run_or_is_listed():
     stages = STAGES | {event: without_power(event) for event in ("winch_coasts", "winch_leaks")}
+    stages |= {"coast": failing("crane_coasts"), "brake": failing("crane_brakes", 0.01), "leak": failing("crane_leaks")}
     digests, silent = {}, []
     for path in PATHS:
         if is_row_direction(path):
@@ -100,6 +115,10 @@ def test_every_number_changes_the_run_or_is_listed():
         here, known = stages, digests
         if path[:-2] in TABLES:
             here, known = {path[-2]: flow_along_row(path, stages["busy"])}, {}
+        if path[:2] == ("crane", "load_chart"):
+            here, known = {"overloaded": overloaded(path[2])}, {}
+        elif path[:2] == ("crane", "load_limiter"):
+            here, known = {"overloaded": overloaded(3)}, {}
         if not matters(path, here, known):
             silent.append(".".join(map(str, path)))
     assert sorted(silent) == sorted(WITHOUT_EFFECT_ON_PHYSICS)

@@ -20,7 +20,8 @@ C33, C35, C44, C55 = STIFFNESS[[2, 2, 3, 4], [2, 4, 3, 4]]
 DH = [(0.0, 0.0, 2.0, 0.0), (-0.38, 90.0, 0.0, 0.0), (1.85, 0.0, -0.6, 0.0), (0.0, 90.0, 0.0, 0.0)]
 TIP = (-0.5, 0.0, 2.0, 0.0)
 REVOLUTE = (True, True, True, False)
-MASSES = (1524.0, 2236.0, 1264.0, 1000.0)
+MASSES = (1524.0, 2236.0, 1264.0)
+SEGMENTS = (190.0, 170.0, 150.0, 135.0, 115.0, 95.0, 80.0, 65.0)  # of the telescope, 1.25 m of stroke each
 CENTRES = ((0.0, 0.0, -1.0), (1.0, 0.0, 0.0), (-0.5, -1.0, 0.0), (-0.5, 0.0, 1.0))
 
 
@@ -38,10 +39,15 @@ def weights_on_ship(joints, load_kg):
     frame, places = np.eye(4), []
     for row, revolute, value, centre in zip(DH, REVOLUTE, joints, CENTRES, strict=True):
         a, alpha, d, theta = row
+        if not revolute:
+            for number, _ in enumerate(SEGMENTS):
+                slid = frame @ craig(a, alpha, d + min(value, 1.25 * (number + 1)), theta)
+                places.append((slid @ [*centre, 1.0])[:3])
         frame = frame @ craig(a, alpha, d + (0.0 if revolute else value), theta + (value if revolute else 0.0))
-        places.append((frame @ [*centre, 1.0])[:3])
+        if revolute:
+            places.append((frame @ [*centre, 1.0])[:3])
     places.append((frame @ craig(*TIP))[:3, 3])  # the wire pulls at the tip
-    return np.array([*MASSES, load_kg]), np.array(places) + BASE - COG
+    return np.array([*MASSES, *SEGMENTS, load_kg]), np.array(places) + BASE - COG
 
 
 def heel_trim_sinkage(joints, load_kg):

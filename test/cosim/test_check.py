@@ -28,7 +28,6 @@ REFUSED = {
         "expected none negative and none greater than the sum of the others",
     ),
     "capsizing crane": ("crane.links.1.mass_kg=5.0e+5", "the ship finds no equilibrium below 40 degrees of heel"),
-    "drive too weak": ("crane.links.1.drive.effort_max=1.0e+3", "the boom needs "),
     "filter that adds waves": ("dp.observer.passive.notch_damping=[0.05, 0.7, 0.7]", "the filter would add waves"),
     "every fix late": ("dp.observer.lost_after_s=0.05", "every fix is late"),
     "waves longer than any": ("dp.observer.wave_period_s=40.0", "wave frequency: lowest "),
@@ -37,6 +36,7 @@ REFUSED = {
         "expected azimuth_port, azimuth_starboard, bow_tunnel in this order",
     ),
     "sector that is a circle": ("vessel.thrusters.0.forbidden_deg=[[90.0, 200.0]]", "forbidden"),
+    "drive too weak": ("crane.links.1.drive.pressure_max_pa=1.0e+6", "the boom needs "),
     "servo steps too long": ("crane.servo.micro_step_max_ms=50.0", "too long for the fastest servo mode"),
 }
 

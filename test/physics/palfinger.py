@@ -4,17 +4,20 @@ from math import atan, hypot, pi
 
 import numpy as np
 
+from shipcrane_twin.physics.crane_actuators import ActuatorParams
 from shipcrane_twin.physics.crane_chain import ChainParams, make_chain
 from shipcrane_twin.physics.crane_cylinders import DriveParams, LinearDrive, TriangleDrive, make_drives
 from shipcrane_twin.physics.crane_reference import MotionLimits, make_limits
+from shipcrane_twin.physics.crane_segments import Segment
 
 GRAVITY = 9.80665
 UP = np.array([0.0, 0.0, GRAVITY])  # proper acceleration of a base at rest
 WORK_POSE = np.array([-pi / 2, 0.5, 0.9, 2.0])
 
 
-def palfinger_chain() -> ChainParams:
-    return make_chain(
+def palfinger_chain(**telescope) -> ChainParams:
+    """The published crane, its telescope one body unless told otherwise."""
+    links = dict(
         dh=[
             [0.0, 0.0, 2.0, 0.0],
             [-0.38, pi / 2, 0.0, 0.0],
@@ -35,6 +38,24 @@ def palfinger_chain() -> ChainParams:
             )
         ],
     )
+    return make_chain(**(links | telescope))
+
+
+SEGMENT_MASSES = (190.0, 170.0, 150.0, 135.0, 115.0, 95.0, 80.0, 65.0)
+
+
+def eight_segment_chain() -> ChainParams:
+    """The same crane with eight telescope segments of 1.25 m stroke that together weigh as much."""
+    plain = palfinger_chain()
+    bars = [np.diag([m / 3.0, m / 3.0, 0.1 * m]) for m in SEGMENT_MASSES]
+    return palfinger_chain(
+        mass=[*plain.mass[:3], SEGMENT_MASSES[-1]],
+        inertia=[*plain.inertia[:3], bars[-1]],
+        segments={
+            3: [Segment(m, [-0.5, 0.0, 1.0], bar, 1.25) for m, bar in zip(SEGMENT_MASSES[:-1], bars, strict=False)]
+        },
+        handover=0.1,
+    )
 
 
 def palfinger_drives() -> DriveParams:
@@ -48,17 +69,35 @@ def palfinger_drives() -> DriveParams:
     )
 
 
-def palfinger_limits(sag=None) -> MotionLimits:
+def palfinger_limits() -> MotionLimits:
     return make_limits(
         palfinger_drives(),
-        length_rate_max=[0.05, 0.01, 0.01, 0.05],
-        accel_max=[0.025, 0.02, 0.02, 0.05],
+        rate_max=[0.05, 0.01, 0.01, 0.05],
+        accel_max=[0.025, 0.008, 0.008, 0.05],
+        jerk_max=[0.1, 0.04, 0.04, 0.25],
         end_margin=0.01,
-        sag=sag,
     )
 
 
-def mixed_chain() -> ChainParams:
+def palfinger_actuators(**changes) -> ActuatorParams:
+    """Oil columns of 2 to 8 Hz in a working posture, strong enough for anything."""
+    stiffness = np.array([1.6e7, 1.7e8, 4.0e7, 2.6e6])
+    plain = ActuatorParams(
+        stiffness=stiffness,
+        damping=stiffness * np.array([0.11, 0.075, 0.055, 0.028]),
+        push=np.full(4, np.inf),
+        pull=np.full(4, np.inf),
+        hold_push=np.full(4, np.inf),
+        hold_pull=np.full(4, np.inf),
+        friction=np.array([1.0e4, 8.0e4, 8.0e4, 500.0]),
+        leak_push=np.array([1e-8, 1e-9, 1e-9, 1e-8]),
+        leak_pull=np.array([1e-8, 2e-9, 2e-9, 2e-8]),
+        tracking=2.0,
+    )
+    return plain._replace(**changes)
+
+
+def mixed_chain(**more) -> ChainParams:
     """Six mixed joints, skew axes, full inertia tensors, a turned tip: nothing cancels by symmetry."""
     rng = np.random.default_rng(11)
     rows = np.column_stack(
@@ -75,8 +114,21 @@ def mixed_chain() -> ChainParams:
         points = rng.normal(size=(8, 3))  # a cloud of point masses is a possible body
         tensors.append(30.0 * (np.sum(points**2) * np.eye(3) - points.T @ points))
     return make_chain(
-        dh=rows, kind=kind, mass=rng.uniform(50.0, 900.0, 6), cog=rng.normal(size=(6, 3)), inertia=tensors
+        dh=rows, kind=kind, mass=rng.uniform(50.0, 900.0, 6), cog=rng.normal(size=(6, 3)), inertia=tensors, **more
     )
+
+
+def mixed_telescopes() -> ChainParams:
+    """The stranger with three skew segments behind each prismatic joint."""
+    rng = np.random.default_rng(13)
+
+    def skew_segments():
+        for _ in range(3):
+            points = rng.normal(size=(8, 3))
+            tensor = 5.0 * (np.sum(points**2) * np.eye(3) - points.T @ points)
+            yield Segment(rng.uniform(50.0, 300.0), rng.normal(size=3), tensor, rng.uniform(0.4, 0.6))
+
+    return mixed_chain(segments={0: list(skew_segments()), 3: list(skew_segments())}, handover=0.4)
 
 
 def random_vectors(rng, count: int, size: float = 1.0) -> list[np.ndarray]:

@@ -2,17 +2,25 @@
 
 import numpy as np
 import pytest
-from palfinger import GRAVITY, inertia_tensor, mixed_chain, palfinger_chain, random_vectors
+from palfinger import (
+    GRAVITY,
+    eight_segment_chain,
+    inertia_tensor,
+    mixed_chain,
+    mixed_telescopes,
+    palfinger_chain,
+    random_vectors,
+)
 
 from shipcrane_twin.physics.crane_chain import forward_kinematics
 from shipcrane_twin.physics.crane_dynamics import base_wrench, mass_matrix
 from shipcrane_twin.physics.crane_inertia import composite_inertia, kinetic_energy, potential_energy
 
 ZERO = np.zeros(3)
-BUILDS = pytest.mark.parametrize("build", [palfinger_chain, mixed_chain])
+BUILDS = pytest.mark.parametrize("build", [palfinger_chain, mixed_chain, eight_segment_chain, mixed_telescopes])
 
 
-@BUILDS
+@pytest.mark.parametrize("build", [palfinger_chain, mixed_chain])
 def test_composite_inertia_is_the_sum_over_the_links(build):
     chain = build()
     rng = np.random.default_rng(7)

@@ -5,25 +5,37 @@ import math
 import numpy as np
 
 from shipcrane_twin.config.scenario import Scenario
+from shipcrane_twin.control.load_limiter import (
+    LOAD,
+    UTILISATION,
+    hoisting_allowed,
+    limit_load,
+    radius_and_slopes,
+    utilisation,
+    warned,
+)
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
 from shipcrane_twin.cosim.controllers import ControllerCommands
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
-from shipcrane_twin.cosim.time import seconds
-from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.cosim.time import NS_PER_S, seconds
+from shipcrane_twin.physics.arrays import Array, Ints
+from shipcrane_twin.physics.crane_actuators import POWER_BRAKE, POWER_COAST, POWER_LEAK, POWER_ON, standing_state
 from shipcrane_twin.physics.crane_base import base_motion, crane_macro_step, tip_odometry
 from shipcrane_twin.physics.crane_chain import tip_state
 from shipcrane_twin.physics.crane_cylinders import TRIANGLE, joint_rates_per_length, lengths_from_joints
-from shipcrane_twin.physics.crane_dynamics import base_wrench
-from shipcrane_twin.physics.crane_motion import ServoParams, servo_gains, static_reference
-from shipcrane_twin.physics.crane_reference import make_limits
+from shipcrane_twin.physics.crane_dynamics import base_wrench, bias_forces
+from shipcrane_twin.physics.crane_reference import VELOCITY
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
+
+FAILURES = {"crane_coasts": POWER_COAST, "crane_brakes": POWER_BRAKE, "crane_leaks": POWER_LEAK}
+"""Events that take the drives' power, and what is left."""
 
 
 class Crane:
-    """Joints with their servos on a base that moves with the ship; the load pulls at the tip."""
+    """Joints with their drives on a base that moves with the ship; the load pulls at the tip."""
 
     name = "crane"
 
@@ -31,6 +43,10 @@ class Crane:
         crane = scenario.crane
         self._chain = build.crane_chain(crane)
         self._drives = build.crane_drives(crane)
+        self._actuators = build.crane_actuators(crane)
+        self._limits = build.crane_limits(crane, self._drives)
+        self._limiter = build.load_limiter(scenario)
+        self._limited = crane.load_limiter.enabled
         self._base = np.array(crane.base_m)
         self._gravity = scenario.constants.gravity_m_s2
         self._step_ns = scenario.step_ns
@@ -41,6 +57,14 @@ class Crane:
         self.commands = JointCommands(scenario.joint_names, scenario.operations)
         self._controllers = ControllerCommands(scenario, scenario.joint_names)
         self._command = np.zeros(len(crane.links))
+        self._mode = np.full(len(crane.links), VELOCITY, dtype=np.int64)
+        self._power = POWER_ON
+        self._failures = sorted(
+            (round(event.at_s * NS_PER_S), FAILURES[event.event])
+            for event in scenario.events
+            if event.event in FAILURES
+        )
+        self._flags = np.zeros(len(crane.links), dtype=np.int64)
 
         rest = at_rest(scenario)
         rot = matrix_from_quat(rest.vessel[3:7])
@@ -48,20 +72,11 @@ class Crane:
         force_b = rotate_to_body(rot, rest.wire_force_w)
         proper_b = self._gravity * rot[2]
         q = rest.joints
-        frequencies = [link.drive.servo_frequency_hz for link in crane.links]
-        kp, kd = servo_gains(self._chain, q, frequencies, crane.servo.damping_ratio)
-        self._servo = ServoParams(kp, kd, np.array([link.drive.effort_max for link in crane.links]))
-        held = static_reference(self._chain, q, kp, proper_b, force_b)
-        self._limits = make_limits(
-            self._drives,
-            length_rate_max=[link.drive.speed_max for link in crane.links],
-            accel_max=[link.drive.accel_max for link in crane.links],
-            end_margin=[link.drive.end_margin_m or 0.0 for link in crane.links],
-            sag=held - q,
-        )
         zeros = np.zeros_like(q)
-        self._state = np.concatenate((q, zeros, held, zeros))
-        self._effort = kp * (held - q)
+        self._effort = bias_forces(self._chain, q, zeros, still, still, proper_b, force_b)
+        self._state = standing_state(self._actuators, self._drives, q, self._effort)
+        load = math.hypot(*rest.wire_force_w) / self._gravity
+        self._load = np.array([load, utilisation(self._limiter, load, radius_and_slopes(self._chain, q)[0]), 0.0])
         odom = np.zeros(13)
         odom[:3] = rest.tip_w - rot @ (self._base + rest.tip_b)
         odom[3:7] = rest.vessel[3:7]
@@ -78,24 +93,49 @@ class Crane:
 
     def step(self, k: int, inputs: Signals) -> Signals:
         """Move the crane over step k: ship motion linear over the step, wire force held in the world."""
-        self._command = self._controllers.over(self.commands.at((k - 1) * self._step_ns), inputs)
-        self._state, self._effort, self._wrench, self._tip, self._inertia, self._before = crane_macro_step(
+        time_ns = (k - 1) * self._step_ns
+        self._command = self._controllers.over(self.commands.at(time_ns), inputs)
+        while self._failures and time_ns >= self._failures[0][0]:
+            self._power = self._failures.pop(0)[1]
+        force_w = inputs["/payload/wire_wrench"][:3]
+        mode, command = self._limit_load(force_w) if self._limited else (self._mode, self._command)
+        self._state, self._effort, self._wrench, self._tip, self._inertia, self._before, self._flags = crane_macro_step(
             self._chain,
-            self._servo,
+            self._actuators,
             self._limits,
             self._base,
             self._gravity,
             self._state,
-            self._command,
+            mode,
+            command,
+            self._power,
             self._before,
             inputs["/vessel/odom"],
             inputs["/vessel/accel"],
-            inputs["/payload/wire_wrench"][:3],
+            force_w,
             inputs["/payload/felt_inertia"][0] * self._carries,
             self._micro,
             self._step_s,
         )
         return self._outputs(k)
+
+    def _limit_load(self, force_w: Array) -> tuple[Ints, Array]:
+        load = math.hypot(*force_w) / self._gravity
+        q = self._state[: len(self._command)]
+        self._load, mode, command = limit_load(
+            self._limiter, self._chain, self._load, load, q, self._mode, self._command
+        )
+        return mode, command
+
+    @property
+    def load_state(self) -> dict[str, float | bool]:
+        """What the operator is told: hook load [kg], utilisation, warning, and whether hoisting is allowed."""
+        return {
+            "hook_load_kg": float(self._load[LOAD]),
+            "utilisation": float(self._load[UTILISATION]),
+            "warning": warned(self._limiter, self._load),
+            "hoisting_allowed": hoisting_allowed(self._load),
+        }
 
     def _outputs(self, k: int) -> Signals:
         out = {
