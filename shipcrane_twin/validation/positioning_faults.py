@@ -30,6 +30,8 @@ CASES = {
     "drift-off": [event(FAULT_S, "power_limit", ", share: 0.0")],
 }
 HELD = ("starboard azimuth lost", "half the power")
+AWAY = ("port azimuth lost", "drift-off")
+"""Those that a bar judges, and those that end in drifting away."""
 
 
 def changes(case: str) -> tuple[str, ...]:
