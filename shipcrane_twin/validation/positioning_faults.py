@@ -29,8 +29,8 @@ CASES = {
     "drive-off": [event(FAULT_S, "thruster_fault", ", which: azimuth_port, fault: runaway")],
     "drift-off": [event(FAULT_S, "power_limit", ", share: 0.0")],
 }
-HELD = ("starboard azimuth lost", "half the power")
-AWAY = ("port azimuth lost", "drift-off")
+HELD = ("starboard azimuth lost", "port azimuth lost", "half the power")
+AWAY = ("drift-off",)
 """Those that a bar judges, and those that end in drifting away."""
 
 

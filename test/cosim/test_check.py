@@ -36,7 +36,6 @@ REFUSED = {
         "vessel.thrusters.2.name=bow",
         "expected azimuth_port, azimuth_starboard, bow_tunnel in this order",
     ),
-    "sector that is a circle": ("vessel.thrusters.0.forbidden_deg=[[90.0, 200.0]]", "forbidden"),
     "servo steps too long": ("crane.servo.micro_step_max_ms=50.0", "too long for the fastest servo mode"),
 }
 
