@@ -151,6 +151,7 @@ def problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         *operation_problems(scenario),
         *sensor_problems(scenario),
         *event_problems(scenario),
+        *zone_problems(scenario),
         *winch_problems(scenario),
         *controller_problems(scenario.controllers, (*scenario.joint_names, WINCH)),
         *weather_problems(scenario),
@@ -238,6 +239,20 @@ def event_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
         (["events", i, key], advice)
         for i, event in enumerate(scenario.events)
         for key, advice in wrong_keys(event, thrusters)
+    ]
+
+
+def zone_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
+    """Check that forbidden zones protect other thrusters that exist."""
+    names = [thruster.name for thruster in scenario.vessel.thrusters]
+    return [
+        (
+            ["vessel", "thrusters", i, "forbidden", k, "protects"],
+            f"expected one of {', '.join(name for name in names if name != thruster.name)}",
+        )
+        for i, thruster in enumerate(scenario.vessel.thrusters)
+        for k, zone in enumerate(thruster.forbidden)
+        if zone.protects not in names or zone.protects == thruster.name
     ]
 
 

@@ -72,12 +72,20 @@ class WindAreasConfig:
 
 
 @settings
+class ForbiddenZoneConfig:
+    """A sector into which a thrust must not point, anticlockwise from forward, while another thruster works."""
+
+    centre_deg: Number
+    half_width_deg: Annotated[Number, Gt(0), Lt(180)]
+    protects: Text
+
+
+@settings
 class ThrusterConfig:
     """One thruster; a tunnel thruster pushes sideways only, to both sides.
 
-    ``thrust_max_n`` is what reaches the ship at full power, the ship at rest. Each row of ``forbidden_deg`` is centre
-    and half width of a sector into which the thrust must not point, anticlockwise from forward. The advance numbers
-    J = V / (n D) are those at which the propeller gives no thrust and takes no torque.
+    ``thrust_max_n`` is what reaches the ship at full power, the ship at rest. The advance numbers J = V / (n D) are
+    those at which the propeller gives no thrust and takes no torque.
     """
 
     name: Text
@@ -95,7 +103,7 @@ class ThrusterConfig:
     rundown_lag_s: Positive
     azimuth_rate_max_deg_s: Positive
     azimuth_lag_s: Positive
-    forbidden_deg: tuple[tuple[Number, Positive], ...] = ()
+    forbidden: tuple[ForbiddenZoneConfig, ...] = ()
 
 
 @settings

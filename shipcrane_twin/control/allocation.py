@@ -18,6 +18,10 @@ from shipcrane_twin.control.azimuth_sectors import reach, turn_towards
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.frames import wrap_angle
 
+PIECE = 3
+"""Column of the state that names the convex piece in use; `NO_PIECE` for none yet."""
+NO_PIECE = -1.0
+
 
 @njit(cache=True)
 def allocation_start(params: AllocationParams, azimuth: Array) -> Array:
@@ -25,7 +29,7 @@ def allocation_start(params: AllocationParams, azimuth: Array) -> Array:
     state = np.zeros((azimuth.shape[0], 4))
     for i in range(azimuth.shape[0]):
         state[i, 0] = azimuth[i] if params.azimuthing[i] != 0.0 else params.axis[i]
-        state[i, 3] = -1.0
+        state[i, PIECE] = NO_PIECE
     return state
 
 
@@ -69,10 +73,10 @@ def allocate(
     new = state.copy()
     if np.isfinite(load.sum()):
         given = np.array([min(part, 1.0) if part > 0.0 else 0.0 for part in share])
-        wanted, piece = static_thrust(params, load, given, state[:, 3].copy())
+        wanted, piece = static_thrust(params, load, given, state[:, PIECE].copy())
         sector, upper = np.zeros((count, 4)), np.zeros(count)
         for i in range(count):
-            new[i, 3] = piece[i]
+            new[i, PIECE] = piece[i]
             sector[i], upper[i], new[i, 2] = thruster_reach(
                 params, i, state[i], wanted[2 * i : 2 * i + 2], azimuth_measured[i], given[i]
             )

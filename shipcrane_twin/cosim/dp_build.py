@@ -1,5 +1,7 @@
 """From settings to the constants of dynamic positioning and of the thrusters."""
 
+from collections.abc import Collection
+
 import numpy as np
 
 from shipcrane_twin.config.dp import DpConfig, SensorsConfig
@@ -90,8 +92,10 @@ def propulsion_params(scenario: Scenario) -> PropulsionParams:
     )
 
 
-def allocation_of(scenario: Scenario, thrusters: PropulsionParams) -> AllocationParams:
-    """Return the allocation's constants."""
+def allocation_of(
+    scenario: Scenario, thrusters: PropulsionParams, stopped: Collection[str] = ()
+) -> AllocationParams:
+    """Return the allocation's constants; what protects a stopped thruster is not forbidden."""
     config = scenario.dp.allocation
     vessel = scenario.vessel
     thrust_max = np.array([t.thrust_max_n for t in vessel.thrusters])
@@ -107,7 +111,10 @@ def allocation_of(scenario: Scenario, thrusters: PropulsionParams) -> Allocation
         azimuth_lag=thrusters.azimuth_lag,
         thrust_rate_max=config.thrust_rate_max_share * thrust_max,
         period=seconds_of(scenario.dp.period_ms),
-        forbidden=[[tuple(np.deg2rad(zone)) for zone in t.forbidden_deg] for t in vessel.thrusters],
+        forbidden=[
+            [(np.deg2rad(z.centre_deg), np.deg2rad(z.half_width_deg)) for z in t.forbidden if z.protects not in stopped]
+            for t in vessel.thrusters
+        ],
         bias=opposing_bias(thrusters.position, thrusters.azimuthing, config.bias_thrust_n),
         hold_thrust=hold,
         yaw_first=config.priority == "yaw",

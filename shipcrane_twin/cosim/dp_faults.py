@@ -62,6 +62,11 @@ class DpFaults:
         share: Array = np.where(lost, 0.0, np.where(self.thruster == LIMITED, self.share, 1.0))
         return share
 
+    @property
+    def stopped(self) -> tuple[str, ...]:
+        """Names of the thrusters whose propellers do not turn."""
+        return tuple(name for name, code in zip(self._names, self.thruster, strict=True) if code == FAILED)
+
     def told(self) -> list[str]:
         """Return what is broken, for people."""
         names = {code: name for name, code in CODES.items()}

@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcrane_twin.config.dp import SetpointConfig, TimedSetpointConfig
 from shipcrane_twin.config.scenario import NS_PER_S, EventConfig, Scenario
-from shipcrane_twin.control.allocation import allocate, allocation_start, horizontal_load
+from shipcrane_twin.control.allocation import NO_PIECE, PIECE, allocate, allocation_start, horizontal_load
 from shipcrane_twin.control.controller import controller_start, controller_update, to_world
 from shipcrane_twin.control.controller import horizontal_load as crane_horizontal
 from shipcrane_twin.control.ekf import ekf_start, ekf_step
@@ -88,6 +88,7 @@ class Positioning:
 
     def __init__(self, scenario: Scenario, pose: Array, azimuth: Array) -> None:
         dp = scenario.dp
+        self._scenario = scenario
         self._dp, self._gravity = dp, scenario.constants.gravity_m_s2
         update_s = dp.period_ms * 1e-3
         mass, damping = dp_build.ship_3dof(scenario)
@@ -172,8 +173,12 @@ class Positioning:
         """Let an event happen, of the scenario or by an operator's order."""
         if event.event in ("dp_on", "dp_off"):
             self._switch = event.event == "dp_on"
-        else:
-            self.faults.happen(event)
+            return
+        stopped = self.faults.stopped
+        self.faults.happen(event)
+        if self.faults.stopped != stopped:
+            self._allocation = dp_build.allocation_of(self._scenario, self.thrusters, self.faults.stopped)
+            self._allocation_state[:, PIECE] = NO_PIECE
 
     def warnings(self) -> list[str]:
         """Return what an operator should know now."""

@@ -29,7 +29,9 @@ CASES = {
     "drive-off": [event(FAULT_S, "thruster_fault", ", which: azimuth_port, fault: runaway")],
     "drift-off": [event(FAULT_S, "power_limit", ", share: 0.0")],
 }
-HELD = ("starboard azimuth lost", "half the power")
+HELD = ("starboard azimuth lost", "port azimuth lost", "half the power")
+AWAY = ("drift-off",)
+"""Those that a bar judges, and those that end in drifting away."""
 
 
 def changes(case: str) -> tuple[str, ...]:

@@ -80,7 +80,7 @@ def all_sections(folder: Path, progress: Progress = lambda text: None) -> list[S
     progress("faults")
     broken = {case: ride(faults.WEATHER, faults.changes(case)) for case in faults.CASES}
     text = f"{words.FAULTS}\n\n{faults.warnings_text(broken)}"
-    figure = drawing.faults(broken, faults.HELD)
+    figure = drawing.faults(broken)
     sections.append(section("Faults", text, faults.fault_rows(broken), figure, "faults"))
     return sections
 

@@ -11,7 +11,7 @@ from shipcrane_twin.control.loop import OMEGA, LoopReport
 from shipcrane_twin.hydro.figure_style import COLOURS, INK, PALE, SMALL, blank, finish, grid, legend_below
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.validation.positioning import Ride, off_setpoint, slow
-from shipcrane_twin.validation.positioning_faults import FAULT_S
+from shipcrane_twin.validation.positioning_faults import AWAY, FAULT_S
 from shipcrane_twin.validation.positioning_moves import azimuth_rates
 from shipcrane_twin.validation.positioning_station import AXES, BAND_HZ, BIAS_HZ, observer_error, spectra, true_bias
 
@@ -123,16 +123,16 @@ def lift(runs: Mapping[str, Ride]) -> Figure:
     return figure
 
 
-def faults(runs: Mapping[str, Ride], held: tuple[str, ...]) -> Figure:
-    """Draw excursions after faults: those that DP holds, and those that end in an excursion."""
+def faults(runs: Mapping[str, Ride]) -> Figure:
+    """Draw excursions after faults: those that end near the set-point, and those that drift away."""
     figure = blank(f"Faults in E2 at {FAULT_S:.0f} s (dotted)", 4.4)
     for axes, inside in zip(figure.subplots(1, 2), (True, False), strict=True):
         for (name, run), colour in zip(runs.items(), (*COLOURS, INK), strict=False):
-            if (name in held or name == "position lost") == inside:
+            if (name not in AWAY) == inside:
                 rows = run.time_s >= FAULT_S - 30.0
                 axes.plot(run.time_s[rows], off_setpoint(run)[0][rows], color=colour, linewidth=1.2, label=name)
         axes.axvline(FAULT_S, color=PALE, linewidth=0.8, linestyle=":")
-        finish(axes, "held" if inside else "not held", "CoG off the set-point [m]", TIME)
+        finish(axes, "held" if inside else "drifts away", "CoG off the set-point [m]", TIME)
         axes.legend(fontsize=SMALL, frameon=False, loc="upper left")
     return figure
 

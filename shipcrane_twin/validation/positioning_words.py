@@ -57,10 +57,9 @@ feed-forward makes the excursion no larger."""
 
 FAULTS = """\
 E2, at 300 s: one azimuth fails, half of the power is left, the position reference is lost for 60 s (dead reckoning),
-the port azimuth runs away to full thrust while DP opposes it (drive-off), or all power is lost (drift-off). Losing the
-starboard azimuth is held, losing the port one is not, although the thrust would do: what is asked for points into the
-starboard azimuth's forbidden zone (its jet would meet the other propeller), and the allocation gives up force
-rather than its direction. What the operator is told:"""
+the port azimuth runs away to full thrust while DP opposes it (drive-off), or all power is lost (drift-off). A
+failed azimuth stands still, so the other one may point its jet at it: forbidden zones count only while what they
+protect works. What the operator is told:"""
 
 CAPTIONS = {
     "station": "Distance is linear below 1 m and logarithmic above.",

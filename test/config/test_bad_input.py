@@ -102,6 +102,14 @@ OVERRIDES = {
         "dp.sensors.position.period_ms=250.0",
         "dp.sensors.position.period_ms is 250.0, expected a whole multiple of dp.period_ms = 100",
     ),
+    "sector that is a circle": (
+        "vessel.thrusters.0.forbidden.0.half_width_deg=200.0",
+        "vessel.thrusters[0].forbidden[0].half_width_deg is 200.0, expected less than 180",
+    ),
+    "zone that protects nobody": (
+        "vessel.thrusters.0.forbidden.0.protects=azimuth_port",
+        "forbidden[0].protects is 'azimuth_port', expected one of azimuth_starboard, bow_tunnel",
+    ),
     "sensor faster than DP": ("dp.sensors.gyro.period_ms=50.0", "expected a whole multiple of dp.period_ms = 100"),
     "less wire than it pays out": (
         "winch.drum.wire_length_m=50.0",

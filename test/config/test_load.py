@@ -25,7 +25,7 @@ def test_every_scenario_of_the_package_is_good(name):
 
 @pytest.mark.parametrize("name", list_scenarios())
 def test_resolved_scenario_reads_back_equal(name, tmp_path):
-    scenario = load_scenario(name, ["macro_step_ms=50.0", "operations.0.velocity_rad_s=0.01"])
+    scenario = load_scenario(name, ["macro_step_ms=50.0", "crane.links.1.mass_kg=2000.0"])
     path = tmp_path / "scenario.yaml"
     path.write_text(scenario_yaml(scenario), encoding="utf-8")
     assert load_scenario(str(path)) == scenario

@@ -35,7 +35,6 @@ REFUSED = {
         "vessel.thrusters.2.name=bow",
         "expected azimuth_port, azimuth_starboard, bow_tunnel in this order",
     ),
-    "sector that is a circle": ("vessel.thrusters.0.forbidden_deg=[[90.0, 200.0]]", "forbidden"),
     "drive too weak": ("crane.links.1.drive.pressure_max_pa=1.0e+6", "the boom needs "),
     "servo steps too long": ("crane.servo.micro_step_max_ms=50.0", "too long for the fastest servo mode"),
 }

@@ -123,6 +123,15 @@ def test_a_thruster_that_runs_away_drives_the_ship_off_and_dp_brings_it_back():
     assert driven.excursion(150.0, 160.0) < 2.0
 
 
+@pytest.mark.parametrize(("lost", "wind_to_deg"), [("azimuth_port", 270.0), ("azimuth_starboard", 90.0)])
+def test_the_other_azimuth_may_push_towards_one_that_stands_still(lost, wind_to_deg):
+    """All sway force of the one left points into the zone that protected the lost one."""
+    weather = (f"environment.wind_direction_to_deg={wind_to_deg}", "environment.wind_speed_m_s=10.0")
+    failed = [event(30.0, "thruster_fault", which=lost, fault="failed")]
+    run = DpRun(dp_scenario(120.0, *weather, events=failed))
+    assert run.excursion(60.0, 120.0) < 2.0
+
+
 def test_dead_reckoning_keeps_the_ship_near_and_the_fix_brings_it_back():
     blind = in_hard_wind("blind")
     assert blind.excursion(30.0, 60.0) < 6.0

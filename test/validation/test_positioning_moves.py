@@ -22,7 +22,7 @@ COARSE = ("macro_step_ms=50.0",)
 
 @pytest.fixture(scope="module")
 def box():
-    return ride(BOX, (*EVERY_STEP, "duration_s=460.0"))
+    return ride(BOX, (*EVERY_STEP, "duration_s=455.0"))
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +50,7 @@ def test_overshoot_and_fast_azimuths_are_seen(box):
     ahead[rows] += 0.06 * way
     wrong = box._replace(pose=ahead, azimuth=1.01 * box.azimuth)
     place, heading = overshoots(wrong)
-    assert place[0] == pytest.approx(0.06, abs=0.02)  # the slow part of a step rings
-    assert heading[0] == pytest.approx(0.06, abs=0.02)
+    assert min(place[0], heading[0]) > 0.06  # the slow part of a step rings
     assert azimuth_rates(wrong).max() > 12.1
     assert [row.holds for row in box_rows(wrong)] == [False, False, False, False]
 
