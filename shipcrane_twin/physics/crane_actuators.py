@@ -31,6 +31,8 @@ STANDING_REFERENCE = 1e-3
 """Speed of the reference, over the actuator's greatest, below which the brake may shut."""
 STANDING_TRIM = 0.02
 """Speed at which the servo still trims, over the actuator's greatest, below which the brake may shut."""
+STOP_SOFT_M = 1e-3
+"""Depth in an end stop over which its damping grows [m]."""
 
 
 class ActuatorParams(NamedTuple):
@@ -210,10 +212,19 @@ def fill_efforts(drives: Array, q: Array, qd: Array, power: int, effort: Array, 
                 force = kept
                 flags[i] |= FLAG_EFFORT
         if length > drives[i, LONGEST]:
-            force -= max(0.0, k * (length - drives[i, LONGEST]) + c * rate)
+            force -= stop_force(k, c, length - drives[i, LONGEST], rate)
         elif length < drives[i, SHORTEST]:
-            force += max(0.0, k * (drives[i, SHORTEST] - length) - c * rate)
+            force += stop_force(k, c, drives[i, SHORTEST] - length, -rate)
         effort[i] = force * arm
+
+
+@njit(cache=True)
+def stop_force(stiffness: float, damping: float, depth: float, rate: float) -> float:
+    """Return the push of an end stop [N] that a drive has entered by a depth [m] at a rate [m/s]; never a pull.
+
+    The damping grows over the first millimetre, so that the force has no jump where the stop is met.
+    """
+    return max(0.0, stiffness * depth + damping * min(1.0, depth / STOP_SOFT_M) * rate)
 
 
 @njit(cache=True)

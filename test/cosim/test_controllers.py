@@ -182,6 +182,7 @@ def test_velocities_are_replaced_or_added_to_in_the_order_of_the_list(controller
 
 def test_an_external_controller_has_a_stand_in_inline_that_acts_one_step_later():
     scenario = with_controllers(mine("add", ("winch",)), duration_s=1.0)
+    scenario = replace(scenario, winch=replace(scenario.winch, jerk_max_m_s3=1e6))
     heard = []
 
     def pay_out(time_ns, inputs):
