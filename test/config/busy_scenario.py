@@ -84,6 +84,7 @@ def busy():
         dp["sensors"][sensor]["delay_samples"] = 1
     dp["observer"] |= {"lost_after_s": 0.1, "return_s": 0.2}
     dp["controller"]["crane_share"] = 0.5
+    dp["allocation"]["hold_thrust_n"] = 537.0  # just below what the azimuths give at first
     dp["setpoints"] = [{"at_s": 0.3, "north_m": 2.0, "east_m": -1.0, "heading_deg": 12.0}]
     data["dp"]["setpoint"] = {"north_m": 1.0, "east_m": -2.0, "heading_deg": 10.0}
     data["operations"] = [

@@ -61,7 +61,7 @@ def test_a_ship_beside_her_station_is_seen(runs):
 
 def test_waves_stay_out_of_the_demand(seen, blind, measured):
     rows = wave_rows("E1", seen, blind)
-    assert sum(row.bar is not None for row in rows) == 3
+    assert sum(row.bar is not None for row in rows) == 5
     hold(rows, measured)
     assert not any(row.holds for row in wave_rows("E1", blind, blind) if row.bar)
 
