@@ -155,10 +155,11 @@ class TipConfig:
 
 @settings
 class ServoConfig:
-    """Joint servos: what all of them share."""
+    """Joint servos: what all of them share; a tip command counts for ``tip_command_timeout_s`` of simulated time."""
 
     tracking_rate_1_s: Annotated[Number, Gt(0), Le(4)]
     micro_step_max_ms: Annotated[Number, Gt(0), Le(50)]
+    tip_command_timeout_s: Positive
 
 
 @settings

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
-from shipcrane_twin.config.controllers import ControllerConfig, controller_problems
+from shipcrane_twin.config.controllers import ControllerConfig, controller_problems, joints_of
 from shipcrane_twin.config.crane import CraneConfig, NotNegative, Positive
 from shipcrane_twin.config.dp import DpConfig
 from shipcrane_twin.config.environment import WAVE_KEYS, EnvironmentConfig
@@ -16,6 +16,9 @@ from shipcrane_twin.config.vessel import VesselConfig
 NS_PER_MS = 1_000_000
 NS_PER_S = 1_000_000_000
 WINCH = "winch"
+
+MOVES = {"revolute": ("velocity_rad_s", "position_rad"), "prismatic": ("velocity_m_s", "position_m")}
+"""What an operation may say to a joint of each kind."""
 
 SENSORS = ("position", "gyro", "mru", "wind")
 THRUSTER_FAULTS = ("none", "failed", "frozen", "limited", "runaway")
@@ -42,7 +45,10 @@ class LockstepConfig:
 
 @settings
 class OperationConfig:
-    """One joint command: a velocity held from one time to another."""
+    """One joint command: a velocity held, or a position gone to, from one time to another; then the joint stands.
+
+    The winch's position is the paid-out length.
+    """
 
     label: Text
     joint: Text
@@ -50,6 +56,8 @@ class OperationConfig:
     to_s: NotNegative
     velocity_rad_s: Number | None = None
     velocity_m_s: Number | None = None
+    position_rad: Number | None = None
+    position_m: Number | None = None
 
 
 @settings
@@ -59,7 +67,9 @@ class EventConfig:
     ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it
     does from then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is a sensor; it
     drops out or freezes. The fault none repairs. ``power_limit``: ``share`` of the total power is left. ``dp_on``,
-    ``dp_off``: from then on ``dp.enabled_at_s`` has no say.
+    ``dp_off``: from then on ``dp.enabled_at_s`` has no say. ``power_failure``: crane and winch lose their power and their
+    brakes shut, as each does alone with ``crane_brakes`` and ``winch_brakes``; ``..._coasts``: nothing but friction is
+    left; ``..._leaks``: what should hold the oil leaks.
     """
 
     label: Text
@@ -71,6 +81,7 @@ class EventConfig:
         "power_limit",
         "dp_on",
         "dp_off",
+        "power_failure",
         "crane_coasts",
         "crane_brakes",
         "crane_leaks",
@@ -202,15 +213,21 @@ def operation_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     """Check joints, times and units of the operations and the times of events."""
     found: list[tuple[list[str | int], str]] = []
     kinds = {link.joint: link.kind for link in scenario.crane.links} | {WINCH: "prismatic"}
+    steered = {joint for controller in scenario.controllers for joint in joints_of(controller)}
     busy: dict[str, list[tuple[float, float]]] = {}
     for i, move in enumerate(scenario.operations):
         here: list[str | int] = ["operations", i]
         if move.joint not in kinds:
             found.append(([*here, "joint"], f"expected one of {', '.join(kinds)}"))
             continue
-        wanted = "velocity_rad_s" if kinds[move.joint] == "revolute" else "velocity_m_s"
-        if (move.velocity_rad_s is None) == (move.velocity_m_s is None) or getattr(move, wanted) is None:
-            found.append((here, f"expected exactly one speed, {wanted}, for the {kinds[move.joint]} {move.joint}"))
+        wanted = MOVES[kinds[move.joint]]
+        given = [key for keys in MOVES.values() for key in keys if getattr(move, key) is not None]
+        if len(given) != 1 or given[0] not in wanted:
+            told = " or ".join(wanted)
+            found.append((here, f"expected exactly one of {told} for the {kinds[move.joint]} {move.joint}"))
+        if wanted[1] in given and move.joint in steered:
+            advice = f"expected {wanted[0]}: a controller steers the {move.joint} and takes no positions"
+            found.append(([*here, wanted[1]], advice))
         if move.to_s <= move.from_s:
             found.append(([*here, "to_s"], f"expected a time after from_s = {move.from_s:g}"))
         for start, end in busy.setdefault(move.joint, []):

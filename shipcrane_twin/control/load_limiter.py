@@ -20,6 +20,9 @@ from shipcrane_twin.physics.crane_reference import POSITION, VELOCITY
 LOAD, UTILISATION, CUT_OUT = 0, 1, 2
 """Columns of the limiter's state: smoothed hook load [kg], its utilisation, 1 while cut out."""
 
+UTILISATION_MOST = 1e3
+"""What is told where the chart ends and any load is too much."""
+
 OUTWARD = 1e-6
 """Gain of radius per unit of a joint [m/rad, m/m] from which a motion counts as outward."""
 
@@ -150,6 +153,22 @@ def limit_load(
     new = limiter_step(params, state, hook_load, radius)
     modes, out = allowed_commands(new, slopes, q, mode, command)
     return new, modes, out
+
+
+@njit(cache=True)
+def load_state(params: LoadLimiterParams, state: Array, radius: float) -> Array:
+    """Return what is told of the load at a radius [m].
+
+    Returns
+    -------
+    float64, shape (5,)
+        Radius [m], safe working load there [kg], smoothed hook load [kg], its utilisation, at most
+        `UTILISATION_MOST`, and 1 while the limiter is cut out.
+    """
+    out = np.empty(5)
+    out[0], out[1], out[2] = radius, safe_working_load(params, radius), state[LOAD]
+    out[3], out[4] = min(state[UTILISATION], UTILISATION_MOST), state[CUT_OUT]
+    return out
 
 
 def hoisting_allowed(state: Array) -> bool:

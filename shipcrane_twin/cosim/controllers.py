@@ -5,11 +5,14 @@ in step k + 1, as a sampled controller does. Crane and winch await its word by s
 (kind ``external``) joins in the same way.
 """
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from shipcrane_twin.config.controllers import ControllerConfig, ExternalConfig, joints_of, replaces
+from shipcrane_twin.config.lifting import on_ship
 from shipcrane_twin.config.scenario import WINCH, Scenario
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.coupling import CHAIN, INPUTS
@@ -58,6 +61,8 @@ def own_chain_of(scenario: Scenario) -> tuple[str, ...]:
 def inputs_of(scenario: Scenario) -> dict[str, tuple[str, ...]]:
     """Return the topics that each participant of a run waits for in every step."""
     inputs = dict(INPUTS)
+    if on_ship(scenario.payload):
+        inputs["payload"] += ("/vessel/odom",)
     for part, joints in (("crane", scenario.joint_names), ("payload", (WINCH,))):
         inputs[part] += tuple(controller_topic(one).name for one in heard(scenario, joints))
     for one in scenario.controllers:
@@ -66,8 +71,26 @@ def inputs_of(scenario: Scenario) -> dict[str, tuple[str, ...]]:
 
 
 def topics_of(scenario: Scenario) -> tuple[Topic, ...]:
-    """Return the topics of a run: the table and those of its controllers."""
-    return (*TOPICS, *(controller_topic(one) for one in scenario.controllers))
+    """Return the topics of a run: the table, with the joints of the run's crane, and those of its controllers."""
+    crane = scenario.joint_names
+    cylinders = [f"{link.joint}_cylinder" for link in scenario.crane.links if link.drive.kind == "triangle"]
+    joints = {
+        "/crane/joint_states": (*crane, *cylinders),
+        "/crane/joint_command_applied": crane,
+        "/crane/joint_command": (*crane, WINCH),
+    }
+    table = (replace(topic, joints=joints.get(topic.name, topic.joints)) for topic in TOPICS)
+    return (*table, *(controller_topic(one) for one in scenario.controllers))
+
+
+def steered_joints(scenario: Scenario) -> frozenset[str]:
+    """Return the joints that controllers command: they take no positions."""
+    return frozenset(joint for one in scenario.controllers for joint in joints_of(one))
+
+
+def tip_holders(scenario: Scenario) -> list[str]:
+    """Return the controllers that command joints of the crane in the operator's place: they take no tip commands."""
+    return [one.name for one in heard(scenario, scenario.joint_names) if replaces(one)]
 
 
 def controller_topic(controller: ControllerConfig) -> Topic:
@@ -129,12 +152,13 @@ class ControllerCommands:
             own, theirs = [a for a, _ in said], [b for _, b in said]
             self._moves.append((controller_topic(one).name, replaces(one), own, theirs))
 
-    def over(self, command: Array, inputs: Mapping[str, Array]) -> Array:
-        """Return the velocities [rad/s, m/s] to follow: the operator's, replaced or added to."""
-        if not self._moves:
-            return command
-        out = np.array(command)
+    def over(self, command: Array, inputs: Mapping[str, Array], least: float = -math.inf) -> Array:
+        """Return the velocities [rad/s, m/s] to follow: the operator's, replaced or added to.
+
+        ``least`` bounds what a controller asks for in the operator's place, not what it adds.
+        """
+        out = command.copy()
         for topic, instead, own, theirs in self._moves:
             said = inputs[topic][theirs]
-            out[own] = said if instead else out[own] + said
+            out[own] = np.maximum(said, least) if instead else out[own] + said
         return out

@@ -22,7 +22,7 @@ INPUTS: dict[str, tuple[str, ...]] = {
         "/crane/base_inertia",
     ),
     "crane": ("/vessel/odom", "/vessel/accel", "/payload/wire_wrench", "/payload/felt_inertia"),
-    "payload": ("/crane/tip",),
+    "payload": ("/crane/tip", "/crane/load_state"),
 }
 """The topics that each subsystem waits for in every step."""
 

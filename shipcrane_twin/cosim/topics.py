@@ -153,6 +153,15 @@ TOPICS: tuple[Topic, ...] = (
         about="Crane and load on the ship at crane_base's origin, weight included, mean over the step [N, N m].",
     ),
     Topic(
+        name="/crane/load_state",
+        type=JOINTS,
+        publisher="crane",
+        frame="crane_base",
+        joints=("radius", "safe_working_load", "hook_load", "utilisation", "cut_out"),
+        fields=("position",),
+        about="Load limiter: radius [m], safe working load there and hook load [kg], their ratio, 1 while cut out.",
+    ),
+    Topic(
         name="/crane/base_inertia",
         type=INERTIA,
         publisher="crane",
@@ -271,8 +280,8 @@ TOPICS: tuple[Topic, ...] = (
         rate="telemetry",
         frame="crane_base",
         joints=CRANE_JOINTS,
-        fields=("velocity",),
-        about="Joint velocities that the crane was told to follow in the step that ends now [rad/s, m/s].",
+        fields=("position", "velocity"),
+        about="What the joints were told in the step that ends now: a position to go to, or a velocity.",
     ),
     Topic(
         name="/winch/joint_states",
@@ -290,8 +299,8 @@ TOPICS: tuple[Topic, ...] = (
         rate="telemetry",
         frame="crane_tip",
         joints=("winch",),
-        fields=("velocity",),
-        about="Pay-out speed that the winch was told to follow in the step that ends now [m/s].",
+        fields=("position", "velocity"),
+        about="What the winch was told in the step that ends now: a paid-out length to go to [m], or a speed [m/s].",
     ),
     Topic(
         name="/crane/joint_command",
@@ -299,8 +308,16 @@ TOPICS: tuple[Topic, ...] = (
         publisher="operator",
         rate="irregular",
         joints=COMMAND_JOINTS,
-        fields=("velocity",),
-        about="Velocity wanted of the named joints, held until the next message [rad/s, m/s].",
+        fields=("position", "velocity"),
+        about="Velocity or position wanted of the named joints, held until the next message [rad/s, m/s; rad, m].",
+    ),
+    Topic(
+        name="/crane/tip_command",
+        type=TWIST,
+        publisher="operator",
+        rate="irregular",
+        frame="crane_base",
+        about="Linear velocity wanted of the tip against the ship, for a short time [m/s]; angular part not read.",
     ),
     Topic(
         name="/dp/setpoint",
@@ -328,9 +345,9 @@ TOPICS: tuple[Topic, ...] = (
         name="/diagnostics",
         type=DIAGNOSTICS,
         publisher="clock",
-        others=("vessel",),
+        others=("vessel", "crane", "payload"),
         rate="irregular",
-        about="State of the lockstep, and of DP, once per second of wall time: who is silent, what is broken.",
+        about="State of the lockstep, DP, crane and load, once per second of wall time: who is silent, what is broken.",
     ),
 )
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shipcrane_twin.cosim.time import stamp_parts
-from shipcrane_twin.cosim.topics import CLOCK, CLOUD, IMU, JOINT_FIELDS, JOINTS, ODOMETRY, Topic
+from shipcrane_twin.cosim.topics import CLOCK, CLOUD, IMU, JOINT_FIELDS, JOINTS, ODOMETRY, WIDTHS, Topic
 from shipcrane_twin.physics.arrays import Array
 
 ENCAPSULATION = b"\x00\x01\x00\x00"
@@ -197,33 +197,33 @@ def read_stamp(message: bytes) -> int:
 
 
 def check_layout(topic: Topic, message: bytes) -> None:
-    """Raise CdrError unless a serialized message from outside can be one of a topic, JointState or PoseStamped."""
+    """Raise CdrError unless a serialized message from outside can be one of a topic, JointState or stamped numbers."""
     if topic.type == JOINTS:
-        read_joint_velocities(message)
+        read_joint_command(message)
     else:
-        read_pose(message)
+        read_stamped(message, topic.type)
 
 
-def read_pose(message: bytes) -> tuple[str, Sequence[float]]:
-    """Return frame, and position and quaternion (7,) of any serialized PoseStamped.
+def read_stamped(message: bytes, kind: str) -> tuple[str, tuple[float, ...]]:
+    """Return frame and numbers of any serialized message of a type that has nothing else, such as PoseStamped.
 
     Raises
     ------
     CdrError
-        If the bytes are not a PoseStamped.
+        If the bytes are not of this type.
     """
     try:
         start = ORIGIN + 12
         end = skip_string(message, ORIGIN + 8)
         frame = message[start : end - 1].decode()
         end += -(end - ORIGIN) % 8
-        return frame, struct.unpack_from("<7d", message, end)
+        return frame, struct.unpack_from(f"<{WIDTHS[kind]}d", message, end)
     except (struct.error, ValueError) as err:
-        raise CdrError(f"not a PoseStamped: {err}") from None
+        raise CdrError(f"not a {kind.rpartition('/')[2]}: {err}") from None
 
 
-def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
-    """Return names and velocities of any serialized JointState.
+def read_joint_command(message: bytes) -> tuple[list[str], list[float], list[float]]:
+    """Return names, velocities and positions of any serialized JointState.
 
     Raises
     ------
@@ -233,12 +233,12 @@ def read_joint_velocities(message: bytes) -> tuple[list[str], Sequence[float]]:
     try:
         at = skip_string(message, ORIGIN + 8)
         names, at = _read_names(message, at)
-        _, at = _read_doubles(message, at)
+        positions, at = _read_doubles(message, at)
         velocities, at = _read_doubles(message, at)
         _read_doubles(message, at)  # a message that lacks its end is none
     except (struct.error, ValueError) as err:
         raise CdrError(f"not a JointState: {err}") from None
-    return names, velocities
+    return names, velocities, positions
 
 
 def joint_velocities(message: bytes, joints: Sequence[str]) -> Array:
@@ -249,7 +249,7 @@ def joint_velocities(message: bytes, joints: Sequence[str]) -> Array:
     CdrError
         If the bytes are no JointState, or names and velocities are not one finite number for each joint.
     """
-    names, velocities = read_joint_velocities(message)
+    names, velocities, _ = read_joint_command(message)
     if sorted(names) != sorted(joints) or len(velocities) != len(names) or not np.isfinite(velocities).all():
         raise CdrError(
             f"names {names}, velocities {list(velocities)}; expected one finite velocity for each of "

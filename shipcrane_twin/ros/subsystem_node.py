@@ -17,8 +17,9 @@ from shipcrane_twin.cosim.controllers import chain_of, inputs_of, own_chain_of, 
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems import Signals, make_subsystem
-from shipcrane_twin.cosim.topics import BY_NAME, COMMAND_JOINTS, JOINTS, Topic, published_by
-from shipcrane_twin.ros.cdr import CdrError, Template, joint_velocities, read_joint_velocities
+from shipcrane_twin.cosim.topics import BY_NAME, JOINTS, Topic, published_by
+from shipcrane_twin.ros.cdr import CdrError, Template, joint_velocities
+from shipcrane_twin.ros.command_desk import CommandDesk
 from shipcrane_twin.ros.diagnostics import SelfReport
 from shipcrane_twin.ros.links import (
     LATCHED_QOS,
@@ -34,7 +35,6 @@ from shipcrane_twin.ros.parameters import declare_run_parameters
 from shipcrane_twin.ros.process import leave_graph, run_node, write_result
 from shipcrane_twin.ros.stop import StopFlag
 
-COMMAND_TOPIC = "/crane/joint_command"
 SERVICE_PERIOD_S = 0.1
 """Wall time between two looks at parameters and services."""
 
@@ -99,7 +99,7 @@ class SubsystemNode:
         ]
         self._foreign = {one.topic for one in scenario.controllers if isinstance(one, ExternalConfig)}
         obeys = hasattr(self._participant.subsystem, "commands")
-        self._command = Inbox(self.node, BY_NAME[COMMAND_TOPIC], group) if obeys else None
+        self._commands = CommandDesk(self.node, self._participant, scenario, group) if obeys else None
         self._mail = Mailroom(self.node, [self._clock, *(inbox for inbox, _, _ in self._inputs)])
         topics = [topic for topic in published_by(name, topics_of(scenario)) if topic.rate != "irregular"]
         # compiling took longer than discovery, so a run that was here before is known by now
@@ -180,7 +180,8 @@ class SubsystemNode:
             if missing is None and not self._is_allowed(time_ns):
                 missing = self._clock
             if missing is None:
-                self._obey()
+                if self._commands is not None:
+                    self._commands.obey()
                 return True
             self._mail.wait(SERVICE_PERIOD_S, only=missing)
             if time.monotonic() > self._service_at:
@@ -193,24 +194,6 @@ class SubsystemNode:
             self._allowed = max(self._allowed, *self._clock.waiting)
             self._clock.waiting.clear()
         return self._allowed >= time_ns
-
-    def _obey(self) -> None:
-        """Hand an operator's commands on; a wrong one is refused with a warning."""
-        if self._command is None:
-            return
-        while (message := self._command.take()) is not None:
-            try:
-                names, velocities = read_joint_velocities(message)
-                unknown = sorted(set(names) - set(COMMAND_JOINTS))
-                if unknown:
-                    raise CdrError(f"joint {unknown[0]!r} is unknown, expected some of {', '.join(COMMAND_JOINTS)}")
-                refusal = self._participant.subsystem.commands.say(names, velocities)  # type: ignore[attr-defined]
-            except CdrError as err:
-                refusal = str(err)
-            if refusal:
-                self.node.get_logger().warn(
-                    f"{COMMAND_TOPIC} refused: {refusal}", throttle_duration_sec=1.0
-                )
 
     def _decode(self, step: int) -> Signals:
         if step == 0:
@@ -251,12 +234,14 @@ class SubsystemNode:
 
     def _report(self, cpu_s: float) -> None:
         steps = self._participant.step
+        events = getattr(self._participant.subsystem, "events", dict)()
         write_result(
             self._run_dir,
             self.name,
             {
                 "steps": steps,
                 "digest": self._participant.digest,
+                "events": events,
                 "cpu_s": cpu_s,
                 "us_per_step": {kind: ns / 1000 / max(steps, 1) for kind, ns in self._spent.items()},
             },

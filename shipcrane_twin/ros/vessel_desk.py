@@ -21,8 +21,9 @@ from shipcrane_twin.config.settings import ConfigError, plain, read_settings
 from shipcrane_twin.cosim.participant import Participant
 from shipcrane_twin.cosim.subsystems.vessel import Vessel
 from shipcrane_twin.cosim.time import seconds
+from shipcrane_twin.cosim.topics import POSE
 from shipcrane_twin.physics.frames import euler_from_matrix, heading_from_yaw, matrix_from_quat
-from shipcrane_twin.ros.cdr import CdrError, read_pose
+from shipcrane_twin.ros.cdr import CdrError, read_stamped
 from shipcrane_twin.ros.diagnostics import pairs, stamped
 from shipcrane_twin.ros.parameters import declare
 
@@ -69,7 +70,7 @@ class VesselDesk:
 
     def _take_setpoint(self, message: bytes) -> None:
         try:
-            frame, (east, north, _, *quat) = read_pose(message)
+            frame, (east, north, _, *quat) = read_stamped(message, POSE)
         except CdrError as err:
             self._refuse(str(err))
             return

@@ -69,7 +69,8 @@ def run_inline(
     Returns
     -------
     dict
-        steps; wall_time_s from the first step on; record_s, the part of it spent on recording; state_digest.
+        steps; wall_time_s from the first step on; record_s, the part of it spent on recording; state_digest; load, what
+        has happened to it.
     """
     recorder = InlineRecorder(scenario, folder) if record else None
     run = InlineRun(scenario, recorder.take if recorder else None)
@@ -91,4 +92,10 @@ def run_inline(
         if recorder is not None:
             recorder.close()
     record_s = recorder.spent_s if recorder is not None else 0.0
-    return {"steps": done, "wall_time_s": wall_s, "state_digest": run.digest, "record_s": record_s}
+    return {
+        "steps": done,
+        "wall_time_s": wall_s,
+        "state_digest": run.digest,
+        "record_s": record_s,
+        "load": run.subsystem("payload").events(),
+    }

@@ -87,6 +87,7 @@ def graph_result(folder: Path) -> dict[str, Any]:
         "steps": max(0, clock["steps"]),
         "wall_time_s": clock["wall_time_s"],
         "state_digest": state_digest(digests),
+        "load": nodes.get("payload", {}).get("events", {}),
     }
 
 
@@ -119,6 +120,7 @@ def conclude(
         "real_time_factor": simulated_s / wall_s if wall_s > 0.0 else 0.0,
         "state_digest": result["state_digest"],
         "complete": complete,
+        "load": load_summary(result.get("load", {})),
     }
     report = None
     if signals is not None:
@@ -141,6 +143,18 @@ def conclude(
     if signals is not None:
         report = write_report(folder)
     return Outcome(summary, report, failure, interrupted)
+
+
+def load_summary(events: dict[str, float]) -> dict[str, float]:
+    """Return what of the load's events a summary tells: snaps and landings, each with the worst of them."""
+    told = {
+        "snaps": "snaps",
+        "snap_tension_max_n": "snap_tension_max_kn",
+        "landings": "landings",
+        "lift_offs": "lift_offs",
+        "impact_speed_max_m_s": "impact_speed_max_m_s",
+    }
+    return {name: events[key] * (1e-3 if name.endswith("_kn") else 1.0) for key, name in told.items() if key in events}
 
 
 def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:

@@ -35,6 +35,7 @@ WITHOUT_EFFECT_ON_PHYSICS = {
     "vessel.thrusters.2.azimuth_rate_max_deg_s": "a tunnel thruster does not turn",
     "vessel.thrusters.2.azimuth_lag_s": "the same",
     "crane.load_limiter.warning": "what the operator is told",
+    "crane.servo.tip_command_timeout_s": "an operator's tip commands only",
 }
 TABLES = (("vessel", "hull", "current_table"), ("vessel", "wind_areas", "table"))
 

@@ -64,7 +64,7 @@ def still(scenario):
     tip = np.zeros(13)
     tip[:3], tip[6] = rest.tip_w, 1.0
     ship = vessel_outputs(vessel_at_rest(rest.params, rest.vessel, rest.inertia, 0), rest.params.cog)[0]
-    return {"/crane/tip": tip, "/vessel/odom": ship}
+    return {"/crane/tip": tip, "/vessel/odom": ship, "/crane/load_state": np.zeros(5)}
 
 
 def drive(data):

@@ -5,7 +5,7 @@ import pytest
 from rosbags.typesys import Stores, get_typestore
 
 from shipcrane_twin.cosim.topics import CLOCK, CLOUD, DIAGNOSTICS, IMU, JOINTS, ODOMETRY, TOPICS, Topic
-from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_velocities, read_stamp
+from shipcrane_twin.ros.cdr import CdrError, Template, read_joint_command, read_stamp, read_stamped
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 TIME_NS = 123_456_789_012
@@ -109,13 +109,25 @@ def test_a_message_cut_short_is_an_error():
             Template(topic).decode(raw[:size])
 
 
-def test_joint_velocities_of_any_joint_state():
+def test_velocities_and_positions_of_any_joint_state():
     kind = STORE.types["sensor_msgs/msg/JointState"]
     header = STORE.types["std_msgs/msg/Header"](STORE.types["builtin_interfaces/msg/Time"](1, 2), "anything")
     message = kind(header, ["boom", "winch"], np.array([9.0]), np.array([0.01, -0.5]), np.empty(0))
-    names, velocities = read_joint_velocities(bytes(STORE.serialize_cdr(message, kind.__msgtype__)))
+    names, velocities, positions = read_joint_command(bytes(STORE.serialize_cdr(message, kind.__msgtype__)))
     assert names == ["boom", "winch"]
     assert velocities == [0.01, -0.5]
+    assert positions == [9.0]
+
+
+def test_frame_and_numbers_of_any_twist():
+    kind = STORE.types["geometry_msgs/msg/TwistStamped"]
+    vector = STORE.types["geometry_msgs/msg/Vector3"]
+    header = STORE.types["std_msgs/msg/Header"](STORE.types["builtin_interfaces/msg/Time"](1, 2), "crane_base")
+    twist = STORE.types["geometry_msgs/msg/Twist"](vector(1.0, 2.0, 3.0), vector(4.0, 5.0, 6.0))
+    raw = bytes(STORE.serialize_cdr(kind(header, twist), kind.__msgtype__))
+    assert read_stamped(raw, kind.__msgtype__) == ("crane_base", (1.0, 2.0, 3.0, 4.0, 5.0, 6.0))
+    with pytest.raises(CdrError, match="not a TwistStamped"):
+        read_stamped(raw[:-8], kind.__msgtype__)
 
 
 @pytest.mark.parametrize(
@@ -123,4 +135,4 @@ def test_joint_velocities_of_any_joint_state():
 )
 def test_bytes_that_are_no_joint_state_are_an_error(raw):
     with pytest.raises(CdrError):
-        read_joint_velocities(raw)
+        read_joint_command(raw)

@@ -13,6 +13,7 @@ from shipcrane_twin.control.anti_sway import (
 )
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
+from shipcrane_twin.cosim.controllers import steered_joints
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import seconds
 from shipcrane_twin.physics.crane_chain import tip_state
@@ -28,7 +29,7 @@ class AntiSway:
         self._state = anti_sway_start(self._params)
         self._step_ns = scenario.step_ns
         self._length = scenario.winch.initial_length_m
-        self.commands = JointCommands(ANTI_SWAY_JOINTS, scenario.operations)
+        self.commands = JointCommands(ANTI_SWAY_JOINTS, scenario.operations, steered_joints(scenario))
 
     def start(self) -> Signals:
         """Return the rates for the first step; the load hangs at rest."""
@@ -41,7 +42,7 @@ class AntiSway:
         return self._say(k, float(np.linalg.norm(load_w - tip_w)), offset, lever)
 
     def _say(self, k: int, length: float, offset: np.ndarray, lever: np.ndarray) -> Signals:
-        wanted = self.commands.at(k * self._step_ns)
+        _, wanted = self.commands.at(k * self._step_ns)
         self._state, rates = anti_sway_step(self._params, self._state, wanted, length, offset, lever)
         return {"/anti_sway/joint_command": rates}
 

@@ -1,15 +1,20 @@
 """The load on the wire, and the winch."""
 
+import math
+
 import numpy as np
 
 from shipcrane_twin.config.scenario import WINCH, Scenario
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
-from shipcrane_twin.cosim.controllers import ControllerCommands
+from shipcrane_twin.cosim.controllers import ControllerCommands, steered_joints
 from shipcrane_twin.cosim.hung_loads import hung_load
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
+from shipcrane_twin.cosim.subsystems.crane import applied
 from shipcrane_twin.cosim.time import NS_PER_S, seconds
+from shipcrane_twin.physics.arrays import Array, Ints
+from shipcrane_twin.physics.crane_reference import POSITION, VELOCITY
 from shipcrane_twin.physics.payload import tip_motion
 from shipcrane_twin.physics.winch import (
     BRAKED,
@@ -23,8 +28,13 @@ from shipcrane_twin.physics.winch import (
     winch_step,
 )
 
-DRIVES = {"winch_coasts": COASTING, "winch_brakes": BRAKED, "winch_leaks": LEAKING}
+DRIVES = {"power_failure": BRAKED, "winch_coasts": COASTING, "winch_brakes": BRAKED, "winch_leaks": LEAKING}
 """What turns the drum after an event of the scenario."""
+
+WITHOUT_POWER = {COASTING: "the drum coasts", BRAKED: "the brake holds", LEAKING: "the motor leaks"}
+
+CUT_OUT = -1
+"""Column of ``/crane/load_state`` that forbids hoisting."""
 
 
 class Payload:
@@ -37,9 +47,10 @@ class Payload:
         self._step_ns = scenario.step_ns
         self._step_s = seconds(scenario.step_ns)
         self._telemetry_every = scenario.telemetry_every
-        self.commands = JointCommands((WINCH,), scenario.operations)
+        self.commands = JointCommands((WINCH,), scenario.operations, steered_joints(scenario))
         self._controllers = ControllerCommands(scenario, (WINCH,))
-        self._command = np.zeros(1)
+        self._mode, self._command = np.full(1, VELOCITY, dtype=np.int64), np.zeros(1)
+        self._hoisting_refused = False
         self._pending = sorted(
             (round(event.at_s * NS_PER_S), event.event)
             for event in scenario.events
@@ -66,10 +77,16 @@ class Payload:
         while self._pending and time_ns >= self._pending[0][0]:
             self._happen(self._pending.pop(0)[1])
         tip_next = tip_motion(inputs["/crane/tip"])
-        self._command = self._controllers.over(self.commands.at(time_ns), inputs)
+        self._mode, self._command = self._allowed(*self.commands.at(time_ns), inputs)
         told = self._memory[TOLD] if self._drive == POWERED else 0.0
         self._memory, hold = winch_step(
-            self._winch, self._memory, self._load.line[0], self._command[0], False, self._drive, self._step_s
+            self._winch,
+            self._memory,
+            self._load.line[0],
+            self._command[0],
+            self._mode[0] == POSITION,
+            self._drive,
+            self._step_s,
         )
         self._pulled = self._load.step(hold, (told, self._memory[TOLD]), (self._tip, tip_next), k, inputs)
         self._tension_most = max(self._tension_most, float(self._pulled[3]))
@@ -77,6 +94,15 @@ class Payload:
             self._slipped_s += self._step_s
         self._tip = tip_next
         return self._outputs(k)
+
+    def _allowed(self, mode: Ints, command: Array, inputs: Signals) -> tuple[Ints, Array]:
+        """Return what the winch is told: nothing that hoists while the crane is cut out, but compensation goes on."""
+        cut_out = inputs["/crane/load_state"][CUT_OUT] > 0.0
+        hoists = command[0] < (self._load.line[0] if mode[0] == POSITION else 0.0)
+        self._hoisting_refused = cut_out and hoists
+        if self._hoisting_refused:
+            mode, command = np.full(1, VELOCITY, dtype=np.int64), np.zeros(1)
+        return mode, self._controllers.over(command, inputs, 0.0 if cut_out else -math.inf)
 
     def events(self) -> dict[str, float]:
         """Return what has happened to load, wire and winch so far.
@@ -93,8 +119,12 @@ class Payload:
         }
 
     def warnings(self) -> list[str]:
-        """Return what an operator should know of the run so far."""
+        """Return what an operator should know: what holds the winch now, and what has happened so far."""
         seen, told = self.events(), []
+        if self._drive != POWERED:
+            told.append(f"the winch has no power: {WITHOUT_POWER[self._drive]}")
+        if self._hoisting_refused:
+            told.append("hoisting refused: the crane is cut out by overload")
         if seen["snaps"]:
             told.append(
                 f"the wire went slack and snapped taut {seen['snaps']:.0f} times, "
@@ -110,6 +140,19 @@ class Payload:
                 f"the load landed {seen['landings']:.0f} times, at up to {seen['impact_speed_max_m_s']:.2f} m/s"
             )
         return told
+
+    def condition(self) -> dict[str, str]:
+        """Return how wire, winch and load do, for diagnostics."""
+        seen = self.events()
+        length, rate = self._load.line
+        return {
+            "power": "on" if self._drive == POWERED else "off",
+            "paid_out_m": f"{length:.2f}",
+            "pay_out_m_s": f"{rate:.2f}",
+            "tension_kn": f"{1e-3 * self._pulled[3]:.2f}",
+            "wire": "taut" if self._pulled[3] > 0.0 else "slack",
+            **{key: f"{value:.4g}" for key, value in seen.items()},
+        }
 
     def _happen(self, event: str) -> None:
         if event == "release_payload":
@@ -130,5 +173,5 @@ class Payload:
             length, rate = self._load.line
             drawn = line_pull(float(self._pulled[3]), rate, self._winch.sheave_friction)
             out["/winch/joint_states"] = np.array([length, rate, drawn])
-            out["/winch/joint_command_applied"] = self._command
+            out["/winch/joint_command_applied"] = applied(self._mode, self._command, np.array([length]))
         return out
