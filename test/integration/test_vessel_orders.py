@@ -40,7 +40,7 @@ class Desk:
 
     def dp(self):
         """Return level, message and values of the vessel's last report."""
-        found = [rest for _, *rest in self.operator.statuses(topic=DIAGNOSTICS) if rest[1] == "vessel: dp"]
+        found = [rest for _, *rest in self.operator.statuses(topic=DIAGNOSTICS) if rest[1] == "vessel: condition"]
         return (found[-1][0], *found[-1][2:]) if found else (None, "", {})
 
     def log(self):
