@@ -82,7 +82,8 @@ def check_sling(scenario: Scenario, chain: ChainParams) -> None:
     if box.sling.leg_stiffness_n_m > allowed:
         raise ConfigError(
             f"{scenario.name}: payload.box.sling.leg_stiffness_n_m is {box.sling.leg_stiffness_n_m:g}, too stiff for "
-            f"macro_step_ms = {scenario.macro_step_ms:g} on this crane; expected at most {allowed:.3g}, or a shorter step"
+            f"macro_step_ms = {scenario.macro_step_ms:g} on this crane; "
+            f"expected at most {allowed:.3g}, or a shorter step"
         )
 
 

@@ -122,7 +122,7 @@ class BoxLoad:
         return odom
 
     def felt_mass(self) -> float:
-        """Return the mass that the tip carries along the taut wire [kg]: the hook's, as the sling hides the box for long.
+        """Return the mass that the tip carries along the taut wire [kg]: the hook's, as the sling hides the box.
 
         With the box bolted to the tip as well, the true force a step late feeds the vibration of the sling.
         """

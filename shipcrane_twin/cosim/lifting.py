@@ -161,7 +161,8 @@ def load_at_start(
     if (off > rows[:2]).any():
         raise ValueError(
             f"payload.box.rests_on is {box.rests_on!r}, of which the crane's tip is {off[0]:.1f} m along and "
-            f"{off[1]:.1f} m across from its centre; expected at most {rows[0]:g} and {rows[1]:g}: move the plane or the tip"
+            f"{off[1]:.1f} m across from its centre; expected at most {rows[0]:g} and {rows[1]:g}: "
+            "move the plane or the tip"
         )
     place = below_tip + (0.5 * box.height_m - load.splash.centre[2] - sink) * normal
     state = slung_state(wire, load, tip_w, length, quat_from_matrix(rot), place, True)

@@ -55,7 +55,7 @@ OVERRIDES = {
         "operations.0.joint=bom",
         "operations[0].joint is 'bom', expected one of slew, boom, knuckle, telescope, winch",
     ),
-    "speed in the wrong unit": ("operations.0.velocity_m_s=0.1", "expected exactly one of velocity_rad_s or position_rad"),
+    "speed in the wrong unit": ("operations.0.velocity_m_s=0.1", "expected exactly one of velocity_rad_s or"),
     "moves that overlap": ("operations.2.from_s=230.0", "expected no overlap with another move of boom, 220 to 242 s"),
     "end before start": ("operations.0.to_s=200.0", "operations[0].to_s is 200.0, expected a time after from_s = 220"),
     "too few joints": (

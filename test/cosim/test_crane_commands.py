@@ -9,7 +9,8 @@ from shipcrane_twin.cosim.inline import InlineRun
 
 STILL = ["environment.waves.systems=[]", "operations=[]", "events=[]", "duration_s=40.0"]
 ENDLESS = "operations=[{{label: a, joint: {0}, from_s: 1.0, to_s: 40.0, {1}}}]"
-OVERLOAD = ["payload.mass_kg=5900.0", "winch.drum.motor_torque_n_m=300.0", "crane.initial_joints=[-1.5708, 0.3, 1.1, 4.774]"]
+REACH = "crane.initial_joints=[-1.5708, 0.3, 1.1, 4.774]"
+OVERLOAD = ["payload.mass_kg=5900.0", "winch.drum.motor_torque_n_m=300.0", REACH]
 
 
 def start(*overrides, name="case2"):
@@ -99,7 +100,7 @@ def test_a_limiter_that_is_off_refuses_nothing():
 
 
 def test_a_warning_comes_before_the_cut_out():
-    run = start("payload.mass_kg=5000.0", OVERLOAD[2], "duration_s=1.0")
+    run = start("payload.mass_kg=5000.0", REACH, "duration_s=1.0")
     finish(run)
     assert run.latest["/crane/load_state"][3] == pytest.approx(5000.0 / 5300.0, abs=0.02)
     assert [line.split(":")[0] for line in run.subsystem("crane").warnings()] == ["overload warning"]
