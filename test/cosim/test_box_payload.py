@@ -252,7 +252,7 @@ def test_every_number_of_the_box_changes_a_run():
         (("box", "sling", "leg_length_m"), 0.7, "leg_length_m above half of lug_distance_m"),
         (("box", "rests_on"), "quay", "rests_on among the labels of planes"),
         (("box", "planes"), [{**SHIP_DECK, "centre_m": [0.0, 0.0, 0.0]}] * 2, "planes with different labels"),
-        (("box", "planes"), [{**SUPPLY, "moves_with": "ground", "centre_m": [0.0] * 3}], "for a plane on a supply ship"),
+        (("box", "planes"), [{**SUPPLY, "moves_with": "ground", "centre_m": [0.0] * 3}], "for a plane on a supply"),
     ],
     ids=lambda part: ".".join(part) if isinstance(part, tuple) else None,
 )
