@@ -196,7 +196,7 @@ FILES = {
     "number as text": (GOOD + "wire: {diameter_m: 5e5}\n", "wire.diameter_m is '5e5', expected a valid number; YAML"),
     "no speed": (
         GOOD + "operations:\n - {label: a, joint: boom, from_s: 1.0, to_s: 2.0}\n",
-        "operations[0] is {'label': 'a', 'joint': 'boom', 'from_s': 1.0, 'to_s': 2.0}, expected exactly one of velocity_rad_s or position_rad",
+        "operations[0] is {'label': 'a', 'joint': 'boom', 'from_s': 1.0, 'to_s': 2.0}, expected exactly one",
     ),
     "step that does not divide": (
         GOOD + "macro_step_ms: 15.0\n",
