@@ -92,7 +92,7 @@ class PlaneConfig:
     """
 
     label: Text
-    on: Literal["ship", "ground", "supply"]
+    moves_with: Literal["ship", "ground", "supply"]
     centre_m: Vector3
     length_m: Positive
     breadth_m: Positive
@@ -104,7 +104,7 @@ class PlaneConfig:
     def __post_init__(self) -> None:
         """Require the heave of a supply deck and of nothing else."""
         for name in ("heave_amplitude_m", "heave_period_s", "heave_phase_deg"):
-            if (getattr(self, name) is not None) != (self.on == "supply"):
+            if (getattr(self, name) is not None) != (self.moves_with == "supply"):
                 raise ValueError(f"{name} for a plane on a supply ship and for no other")
 
 
@@ -159,4 +159,4 @@ class PayloadConfig:
 
 def on_ship(payload: PayloadConfig) -> bool:
     """Return whether the load may touch the ship, so that its motion has to be known."""
-    return payload.box is not None and any(plane.on == "ship" for plane in payload.box.planes)
+    return payload.box is not None and any(plane.moves_with == "ship" for plane in payload.box.planes)

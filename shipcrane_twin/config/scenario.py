@@ -67,9 +67,9 @@ class EventConfig:
     ``release_payload``: the load comes off the hook. ``thruster_fault``: ``which`` is a thruster, ``fault`` what it
     does from then on, ``share`` of its thrust with the fault limited. ``sensor_fault``: ``which`` is a sensor; it
     drops out or freezes. The fault none repairs. ``power_limit``: ``share`` of the total power is left. ``dp_on``,
-    ``dp_off``: from then on ``dp.enabled_at_s`` has no say. ``power_failure``: crane and winch lose their power and their
-    brakes shut, as each does alone with ``crane_brakes`` and ``winch_brakes``; ``..._coasts``: nothing but friction is
-    left; ``..._leaks``: what should hold the oil leaks.
+    ``dp_off``: from then on ``dp.enabled_at_s`` has no say. ``power_failure``: crane and winch lose their power and
+    their brakes shut, as those of each alone do with ``crane_brakes`` and ``winch_brakes``; with ``..._coasts`` nothing
+    but friction is left, with ``..._leaks`` what should hold the oil leaks.
     """
 
     label: Text

@@ -15,13 +15,16 @@ from shipcrane_twin.cosim.subsystems import make_subsystem
 from shipcrane_twin.cosim.topics import THRUSTERS
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_actuators import joint_stiffness
-from shipcrane_twin.physics.crane_chain import ChainParams
+from shipcrane_twin.physics.crane_chain import ChainParams, tip_jacobian
 from shipcrane_twin.physics.crane_cylinders import joint_rates_per_length, joints_from_lengths
 from shipcrane_twin.physics.crane_dynamics import bias_forces, mass_matrix
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
 
 RK4_REACH = 2.5
 """Largest rate times step that classical Runge-Kutta integrates stably (2.79 for real rates), with a margin."""
+
+SLING_REACH = 1.0
+"""Of a sling's stiffness times step squared over the tip's inertia; loads of 5 t start to chatter from 1.5 on."""
 
 
 def check_buildable(scenario: Scenario) -> None:
@@ -60,6 +63,28 @@ def check_buildable(scenario: Scenario) -> None:
     check_controllers(scenario)
     check_strength(scenario, chain, rest)
     check_servo_step(scenario, chain, ends)
+    check_sling(scenario, chain)
+
+
+def check_sling(scenario: Scenario, chain: ChainParams) -> None:
+    """Raise ConfigError if the sling of a box is too stiff for the macro step.
+
+    Its force reaches the tip a step late, so stiffness times step squared is bounded by the tip's own inertia.
+    """
+    box = scenario.payload.box
+    if box is None:
+        return
+    q = np.array(scenario.crane.initial_joints)
+    lift = tip_jacobian(chain, q)[2]
+    tip_mass = 1.0 / float(lift @ np.linalg.solve(mass_matrix(chain, q), lift))
+    upright = 1.0 - (0.5 * box.sling.lug_distance_m / box.sling.leg_length_m) ** 2
+    allowed = SLING_REACH * tip_mass / (2.0 * upright * (1e-3 * scenario.macro_step_ms) ** 2)
+    if box.sling.leg_stiffness_n_m > allowed:
+        raise ConfigError(
+            f"{scenario.name}: payload.box.sling.leg_stiffness_n_m is {box.sling.leg_stiffness_n_m:g}, too stiff for "
+            f"macro_step_ms = {scenario.macro_step_ms:g} on this crane; "
+            f"expected at most {allowed:.3g}, or a shorter step"
+        )
 
 
 def check_strength(scenario: Scenario, chain: ChainParams, rest: Rest) -> None:

@@ -122,10 +122,11 @@ class BoxLoad:
         return odom
 
     def felt_mass(self) -> float:
-        """Return the mass that the tip carries along the taut wire [kg]: the box counts while it hangs free."""
-        apart = self._state[rigid_load.LANDING + rigid_load.APART] > 0.0
-        hung = self._load.mass if apart and self._state[rigid_load.SLUNG] else 0.0
-        return float(payload.carried(self._wire, self._state[rigid_load.LENGTH], self._load.hook_mass)[0]) + hung
+        """Return the mass that the tip carries along the taut wire [kg]: the hook's, as the sling hides the box.
+
+        With the box bolted to the tip as well, the true force a step late feeds the vibration of the sling.
+        """
+        return float(payload.carried(self._wire, self._state[rigid_load.LENGTH], self._load.hook_mass)[0])
 
     def events(self) -> dict[str, float]:
         """Return what has happened to the load so far."""

@@ -85,7 +85,7 @@ def plane_row(plane: PlaneConfig, time_s: float, ship: Array) -> Array:
         ``/vessel/odom`` at that time; of no account for a plane that is not on the ship.
     """
     place, velocity, turning = np.array(plane.centre_m), np.zeros(3), np.zeros(3)
-    if plane.on == "ship":
+    if plane.moves_with == "ship":
         rot = matrix_from_quat(ship[3:7])
         turning = rotate_to_world(rot, ship[10:13])
         velocity = rotate_to_world(rot, ship[7:10] + cross(ship[10:13], place))
@@ -156,6 +156,14 @@ def load_at_start(
     rot = axes @ turned(math.atan2(ahead[1], ahead[0]))
     sink = 0.25 * load.mass * wire.gravity / load.planes[0, STIFFNESS]
     below_tip = tip_w + np.array([0.0, 0.0, ((row[:3] - tip_w) @ normal) / normal[2]])
+    off = np.abs(axes.T @ (below_tip - row[:3]))[:2]
+    rows = load.planes[[plane.label for plane in box.planes].index(box.rests_on)]
+    if (off > rows[:2]).any():
+        raise ValueError(
+            f"payload.box.rests_on is {box.rests_on!r}, of which the crane's tip is {off[0]:.1f} m along and "
+            f"{off[1]:.1f} m across from its centre; expected at most {rows[0]:g} and {rows[1]:g}: "
+            "move the plane or the tip"
+        )
     place = below_tip + (0.5 * box.height_m - load.splash.centre[2] - sink) * normal
     state = slung_state(wire, load, tip_w, length, quat_from_matrix(rot), place, True)
     state[VELOCITY:QUAT] = row[3:6] + cross(row[15:18], place - row[:3])

@@ -19,20 +19,35 @@ _JOINTS = {
     "knuckle": ("knuckle boom,\npositive up [deg]", style.GREEN),
     "telescope": ("telescope,\npositive out [m]", style.PURPLE),
 }
+_COLORS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE)
+
+
+def _kinds(scenario: Mapping[str, Any]) -> dict[str, str]:
+    """Return the kind of every joint of the scenario's crane, base to tip; the usual crane's where none is told."""
+    links = scenario.get("crane", {}).get("links") or ()
+    usual = {name: "prismatic" if name == "telescope" else "revolute" for name in _JOINTS}
+    return {link["joint"]: link["kind"] for link in links} or usual
+
+
+def _label(name: str, kind: str, place: int) -> tuple[str, str]:
+    """Return label of the axis and colour of a joint."""
+    unit = "m" if kind == "prismatic" else "deg"
+    return _JOINTS.get(name, (f"{name} [{unit}]", _COLORS[place % len(_COLORS)]))
 
 
 def joints(signals: Signals, scenario: Mapping[str, Any]) -> Plot | None:
     """Joint positions of the crane with the operations; the paper's figure 9."""
     states = signals.joints.get("/crane/joint_states")
-    shown = [name for name in _JOINTS if states is not None and name in states.names]
+    kinds = _kinds(scenario)
+    shown = [name for name in kinds if states is not None and name in states.names]
     if states is None or not shown:
         return None
     figure, grid = style.time_axes(len(shown), height_in=1.7)
     moved = []
     for (axes,), name in zip(grid, shown, strict=True):
-        label, color = _JOINTS[name]
+        label, color = _label(name, kinds[name], shown.index(name))
         position = states.position[:, states.names.index(name)]
-        values, unit = (position, "m") if name == "telescope" else (np.rad2deg(position), "deg")
+        values, unit = (position, "m") if kinds[name] == "prismatic" else (np.rad2deg(position), "deg")
         style.line(axes, states.time_s, values, color, linewidth=1.6)
         style.finish(axes, label, 0.5 if unit == "m" else 5.0)
         change = float(np.ptp(values))

@@ -234,7 +234,7 @@ class SubsystemNode:
 
     def _report(self, cpu_s: float) -> None:
         steps = self._participant.step
-        events = getattr(self._participant.subsystem, "events", dict)()
+        events: dict[str, float] = getattr(self._participant.subsystem, "events", dict)()
         write_result(
             self._run_dir,
             self.name,

@@ -97,5 +97,5 @@ def run_inline(
         "wall_time_s": wall_s,
         "state_digest": run.digest,
         "record_s": record_s,
-        "load": run.subsystem("payload").events(),
+        "load": run.subsystem("payload").events(),  # type: ignore[attr-defined]
     }

@@ -20,7 +20,6 @@ from busy_scenario import (
 from pydantic import TypeAdapter, ValidationError
 
 from shipcrane_twin.config.scenario import Scenario, problems
-from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.cosim.inline import InlineRun
 
 READ = TypeAdapter(Scenario).validate_python
@@ -90,7 +89,7 @@ def matters(path, stages, digests):
                 found = digest(changed(stage, path, value))
             except ValidationError:
                 continue
-            except ConfigError:  # what the hull's database refuses, it has been compared with
+            except ValueError:  # what the hull's database or the load chart refuses, it has been compared with
                 return True
             if found not in (None, digests[name]):
                 return True

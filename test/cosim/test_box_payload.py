@@ -35,9 +35,9 @@ BOX = {
 AT_EDGES = ("length_m", "breadth_m", "heading_deg")
 """What of a plane matters only where the box meets an edge."""
 
-SHIP_DECK = {"label": "deck", "on": "ship", "length_m": 40.0, "breadth_m": 40.0, "heading_deg": 10.0}
+SHIP_DECK = {"label": "deck", "moves_with": "ship", "length_m": 40.0, "breadth_m": 40.0, "heading_deg": 10.0}
 SUPPLY = {
-    "label": "barge", "on": "supply", "length_m": 30.0, "breadth_m": 30.0, "heading_deg": 40.0,
+    "label": "barge", "moves_with": "supply", "length_m": 30.0, "breadth_m": 30.0, "heading_deg": 40.0,
     "heave_amplitude_m": 0.3, "heave_period_s": 5.0, "heave_phase_deg": 30.0,
 }  # fmt: skip
 
@@ -252,7 +252,7 @@ def test_every_number_of_the_box_changes_a_run():
         (("box", "sling", "leg_length_m"), 0.7, "leg_length_m above half of lug_distance_m"),
         (("box", "rests_on"), "quay", "rests_on among the labels of planes"),
         (("box", "planes"), [{**SHIP_DECK, "centre_m": [0.0, 0.0, 0.0]}] * 2, "planes with different labels"),
-        (("box", "planes"), [{**SUPPLY, "on": "ground", "centre_m": [0.0, 0.0, 0.0]}], "for a plane on a supply ship"),
+        (("box", "planes"), [{**SUPPLY, "moves_with": "ground", "centre_m": [0.0] * 3}], "for a plane on a supply"),
     ],
     ids=lambda part: ".".join(part) if isinstance(part, tuple) else None,
 )
