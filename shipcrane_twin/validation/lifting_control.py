@@ -118,8 +118,8 @@ def sway_rows(runs: Mapping[str, Hang]) -> list[Row]:
     turned = abs(np.rad2deg(runs["without"].slew[-1] - runs["without"].slew[0]))
     return [
         Row(
-            f"anti-sway: residual sway after slewing by {turned:.0f} degrees, of the uncompensated", left / plain, SWAY_BAR,
-            "", f"{left:.2f} of {plain:.2f} deg",
+            f"anti-sway: residual sway after slewing by {turned:.0f} degrees, of the uncompensated", left / plain,
+            SWAY_BAR, "", f"{left:.2f} of {plain:.2f} deg",
         ),
         Row("anti-sway: slew off where it ends without it", float(off), 0.5, "deg"),
     ]  # fmt: skip
