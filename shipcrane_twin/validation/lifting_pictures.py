@@ -63,7 +63,8 @@ def on_the_wire() -> Figure:
         path.plot(found.time_s, found.exact[:, k] - wire.FIXED[k], color=PALE, linewidth=2.4)
         path.plot(found.time_s, found.ours[:, k] - wire.FIXED[k], color=COLOURS[k], linewidth=0.9, label=name)
     finish(path, "spherical pendulum, moving pivot; grey: rigid rod", "[m]", TIME)
-    path.legend(fontsize=SMALL, frameon=False)
+    path.set_ylim(-3.8, 3.0)
+    path.legend(fontsize=SMALL, frameon=False, loc="lower left", ncols=2)
     for low, high in ((0.05, 0.9), (1.1, 4.5)):
         ratio = np.linspace(low, high, 200)
         gain.semilogy(ratio, np.abs(1.0 / (1.0 - ratio**2)), color=PALE, linewidth=1.6)
@@ -78,7 +79,7 @@ def on_the_wire() -> Figure:
         snap.plot(0.001 * np.arange(len(states)), tension / 1e3, color=colour, linewidth=1.1, label=name)
     snap.axhline(wire.snap_tension(height, length, mass) / 1e3, color=INK, linewidth=0.8, linestyle="--")
     finish(snap, f"{mass / 1e3:g} t falls {height:g} m: elastic pull", "[kN]", TIME)
-    snap.legend(fontsize=SMALL, frameon=False)
+    snap.legend(fontsize=SMALL, frameon=False, loc="center left")
     return figure
 
 
@@ -131,6 +132,7 @@ def abuse(found: Trace, crane: Machine) -> Figure:
         for end in (drives.length_min[i], drives.length_max[i]):
             if np.isfinite(end):
                 axes.axhline(end, color=COLOURS[1], linewidth=0.8, linestyle="--")
+                axes.set_ylim(0.9 * drives.length_min[i], 1.05 * drives.length_max[i])
         finish(axes, name, "[m]" if np.isfinite(drives.length_max[i]) else "[rad]", TIME)
     axes = all_axes[len(crane.names)]
     axes.plot(found.time_s, found.wire, color=COLOURS[0], linewidth=0.8)
@@ -153,10 +155,11 @@ def heave(with_it: control.Hang, without: control.Hang, name: str) -> Figure:
     spectrum.semilogy(hz[inside], load[inside], color=COLOURS[1], linewidth=1.2, label="load, compensated")
     spectrum.axvspan(*control.BAND_HZ, color=PALE, alpha=0.15, linewidth=0.0)
     finish(spectrum, "heave", "[m²/Hz]", "frequency [Hz]")
-    loud = inside & (tip >= control.POWER_SHARE * tip.max())
+    loud = (hz <= control.BAND_HZ[1] + 1e-9) & (tip >= control.POWER_SHARE * tip.max())
     ratio.plot(hz[loud], follows[loud], "o-", color=COLOURS[1], linewidth=1.0, markersize=3.5)
     ratio.axhline(control.HEAVE_BAR, color=INK, linewidth=0.8, linestyle="--")
-    ratio.set_xlim(0.0, 0.4)
+    ratio.set_xlim(0.0, 0.25)
+    ratio.set_ylim(0.0, 0.15)
     finish(ratio, "load heave that follows the tip's, over it; bar dashed", "[1]", "frequency [Hz]")
     legend_below(figure, spectrum)
     return figure

@@ -54,7 +54,8 @@ rates and positions. An actuator may go faster than its rated speed where the lo
 COMPENSATION = """\
 Heave compensation (`config/scenarios/heave_compensation.yaml`): a load on 10 to 80 m of wire in E2; spectra by
 Welch's method from 100 s on, segments of 80 s. Between 0.05 and 0.2 Hz as a whole, and at the worst single frequency
-(the part of the load's heave that follows the tip's, where the tip's density is at least 2 % of its peak)."""
+(the part of the load's heave that follows the tip's, where the tip's density is at least 2 % of its peak). A load that
+swings rises twice in every swing, above the band on short wire: that is no heave of the tip and stays."""
 
 SWAY = """\
 Anti-sway (`config/scenarios/anti_sway.yaml`): a quarter turn with the load on 8 m of wire in calm water; sway from 7

@@ -18,7 +18,7 @@ LIFT = (
     "operations=[{label: up, joint: boom, from_s: 2.0, to_s: 12.0, velocity_rad_s: 0.02},"
     "{label: in, joint: telescope, from_s: 12.0, to_s: 18.0, velocity_m_s: -0.05},"
     "{label: slew, joint: slew, from_s: 14.0, to_s: 24.0, velocity_rad_s: -0.04}]",
-    "events=[{label: off, at_s: 26.0, event: release_payload}]",
+    "events=[{label: drop, at_s: 26.0, event: release_payload}]",
 )
 
 
@@ -73,7 +73,9 @@ def test_servos_follow_under_full_load_and_roll(cranes, measured):
 def test_a_servo_that_overshoots_or_stays_behind_is_seen(cranes):
     crane = cranes["Palfinger"]
     soft = crane._replace(
-        actuators=crane.actuators._replace(stiffness=0.1 * crane.actuators.stiffness, damping=0.0 * crane.actuators.damping)
+        actuators=crane.actuators._replace(
+            stiffness=0.1 * crane.actuators.stiffness, damping=0.0 * crane.actuators.damping
+        )
     )
     assert servo.respond(soft, 0, 1.0, 0.0).overshoot > servo.OVERSHOOT_BAR
     run = servo.respond(crane, 3, 1.0, 0.0)
@@ -94,10 +96,10 @@ def test_references_keep_their_limits_whatever_is_told(cranes, measured):
         hold(abuse.reference_rows(name, abuse.referenced(crane)), measured)
 
 
-def test_limits_that_are_passed_are_seen(cranes):
-    crane = cranes["Palfinger"]
-    slower = crane.limits._replace(drives=crane.limits.drives._replace(length_max=crane.limits.drives.length_max - 1.0))
-    assert abuse.referenced(crane._replace(limits=slower), 200)[0] > 0.0
+def test_limits_that_are_passed_are_seen():
+    rows = abuse.reference_rows("x", (2e-3, 0.1, 0.2))
+    assert not any(row.holds for row in rows)
+    assert all(row.holds for row in abuse.reference_rows("x", (-1.0, -0.1, -0.2)))
 
 
 def test_limiter_telescope_end_and_failures(cranes, measured):
