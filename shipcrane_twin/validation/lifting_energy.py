@@ -80,7 +80,8 @@ def swing(
             chain, actuators, limits, state, mode, command, POWER_ON, base, base, n_micro, SWING_STEP_S
         )[0]
     table = np.array(rows)
-    return Swing(SWING_STEP_S * np.arange(len(table)), table[:, 0], table[:, 1], table[:, 2:])
+    time_s = np.arange(len(table), dtype=np.float64) * SWING_STEP_S
+    return Swing(time_s, table[:, 0], table[:, 1], table[:, 2:])
 
 
 def undamped(crane: Machine) -> Machine:

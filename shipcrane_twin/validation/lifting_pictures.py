@@ -113,7 +113,7 @@ def servo(found: Mapping[str, Mapping[str, Mapping[float, Response]]]) -> Figure
         for axes in row[len(joints) :]:
             axes.set_visible(False)
         for axes, (joint, runs) in zip(row, joints.items(), strict=False):
-            for (roll, run), colour in zip(reversed(runs.items()), reversed(COLOURS[:2]), strict=True):
+            for (roll, run), colour in zip(reversed(list(runs.items())), (COLOURS[1], COLOURS[0]), strict=True):
                 name = f"roll {roll:g} deg" if roll else "level ship"
                 axes.plot(run.time_s, run.rate, color=colour, linewidth=0.9, label=name)
             axes.plot([0.0, GO_S, GO_S, STOP_S, STOP_S, run.time_s[-1]], [0, 0, 1, 1, 0, 0], color=PALE, linewidth=0.7)
@@ -169,7 +169,7 @@ def sway(runs: Mapping[str, control.Hang]) -> Figure:
     """Draw the sway and the slewing angle."""
     figure = blank("Anti-sway: a quarter turn with the load on 8 m of wire", 5.0)
     angle, slew = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    for (name, run), colour in zip(reversed(runs.items()), (COLOURS[1], COLOURS[0]), strict=True):
+    for (name, run), colour in zip(reversed(list(runs.items())), (COLOURS[1], COLOURS[0]), strict=True):
         angle.plot(run.time_s, run.sway_deg, color=colour, linewidth=1.0, label=f"{name} anti-sway")
         slew.plot(run.time_s, np.rad2deg(run.slew), color=colour, linewidth=1.0)
         stopped = run.scenario.operations[0].to_s + control.STOPPED_S

@@ -101,10 +101,10 @@ def respond(crane: Machine, joint: int, way: float, roll_deg: float) -> Response
         )  # fmt: skip
         state, before = out[0], out[5]
         here = length_and_arm(crane.limits.drives, joint, state[joint])[1]
-        roll = 2.0 * math.degrees(math.asin(odom[3]))
         told = state[4 * n + joint] / crane.limits.lag[joint] / here  # the reference follows its path at this rate
-        rows.append((k * STEP_S, state[n + joint] / wanted, told / wanted, roll))
-    return Response(*np.array(rows).T, mass)
+        rows.append((k * STEP_S, state[n + joint] / wanted, told / wanted, 2.0 * math.degrees(math.asin(odom[3]))))
+    time_s, rate, reference, roll = np.array(rows).T
+    return Response(time_s, rate, reference, roll, mass)
 
 
 def longest_arm(crane: Machine, joint: int) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +29,7 @@ EASED_M = 0.05
 BAR = 0.02
 
 
-def box_in_water(size: Array = SIZE, centre: ArrayLike = (0.0, 0.0, 0.0), **changes: float) -> SplashParams:
+def box_in_water(size: Array = SIZE, centre: ArrayLike = (0.0, 0.0, 0.0), **changes: Any) -> SplashParams:
     """Return a closed box of a size (3,) [m], whose middle is at a place (3,) seen from its CoG."""
     added = [body_added_mass(size[k - 2], size[k - 1], size[k], DENSITY, 0.0) for k in range(3)]
     box = SplashParams(

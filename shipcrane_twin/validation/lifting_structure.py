@@ -93,7 +93,8 @@ def overload() -> Overload:
         radius = radius_and_slopes(chain, run.latest["/crane/joint_states"][:n])[0]
         rows.append((k * scenario.step_ns / NS_PER_S, radius, seen["utilisation"], seen["warning"],
                      not seen["hoisting_allowed"]))  # fmt: skip
-    return Overload(*np.array(rows, float).T, np.array(scenario.crane.load_chart))
+    time_s, radius, used, warning, cut_out = np.array(rows, dtype=np.float64).T
+    return Overload(time_s, radius, used, warning, cut_out, np.array(scenario.crane.load_chart))
 
 
 def overload_rows(found: Overload) -> list[Row]:
@@ -173,7 +174,8 @@ def driven(crane: Machine, command: Array, seconds: float, power: int = POWER_ON
         )[0]
         rows.append(lengths_from_joints(crane.limits.drives, state[:n]))
     length = np.array(rows)
-    return Motion(STEP_S * np.arange(1, len(rows) + 1), length, np.gradient(length, STEP_S, axis=0))
+    time_s = np.arange(1, len(rows) + 1, dtype=np.float64) * STEP_S
+    return Motion(time_s, length, np.gradient(length, STEP_S, axis=0))
 
 
 def to_the_end(crane: Machine) -> Motion:

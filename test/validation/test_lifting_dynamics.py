@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from shipcrane_twin import cli
 from shipcrane_twin.config.settings import ConfigError
 from shipcrane_twin.hydro.compare import Row
 from shipcrane_twin.validation import lifting_abuse as abuse
@@ -139,3 +141,19 @@ def test_page_says_what_is_left_out(tmp_path):
     assert text.startswith("# Validation of crane and load\n")
     assert "1 of 1 figures" in text
     assert "| [None](#none) | left out |" in text
+
+
+@pytest.mark.parametrize(("value", "code"), [(1.0, 0), (3.0, 3)])
+def test_the_command_writes_the_page_and_says_whether_all_holds(value, code, tmp_path, monkeypatch):
+    asked = {}
+
+    def sections(folder, **options):
+        asked.update(options, folder=folder)
+        return [Section("Part", "Words.", [Row("one", value, 2.0, "m")], [])]
+
+    monkeypatch.setattr(page, "all_sections", sections)
+    words = ["crane", "validate", "--out", str(tmp_path), "--kinematics", "poses.csv"]
+    assert CliRunner().invoke(cli.app, words).exit_code == code
+    assert asked["folder"] == tmp_path / "pictures"
+    assert str(asked["kinematics"]) == "poses.csv"
+    assert "--kinematics FILE`" in (tmp_path / "validation_crane.md").read_text(encoding="utf-8")
