@@ -111,7 +111,7 @@ def nonsense(names: Sequence[str], seed: int) -> Operator:
     return say
 
 
-def abused(operator: Operator | None = None, steps: int = STEPS, seed: int = 1) -> Trace:
+def abused(operator: Operator | None = None, steps: int = STEPS, seed: int = 2) -> Trace:
     """Run the whole twin in E2 while an operator, by default `nonsense`, commands crane and winch."""
     scenario = load_scenario(WEATHER, ["operations=[]", "events=[]"])
     seconds = steps * scenario.step_ns / NS_PER_S

@@ -72,14 +72,14 @@ def on_the_wire() -> Figure:
     finish(gain, "load over pivot motion; grey: linear formula", "[1]", "frequency over the natural one")
     length, mass, height = wire.DROPS[1]
     bare = wire.WIRE._replace(damping_ratio=0.0)
-    for name, rope, colour in (("no damping", bare, COLOURS[0]), ("damping ratio 0.5", wire.WIRE, COLOURS[1])):
+    for name, rope, colour in (("no damping", bare, COLOURS[0]), ("damped, 0.5", wire.WIRE, COLOURS[1])):
         states = wire.falls(height, length, mass, rope, 0.001, 0.7)
         reach = np.linalg.norm(states[:, :3] - wire.FIXED[:3], axis=1)
         tension = wire.stiffness_at(length) * np.maximum(0.0, reach - length)
         snap.plot(0.001 * np.arange(len(states)), tension / 1e3, color=colour, linewidth=1.1, label=name)
     snap.axhline(wire.snap_tension(height, length, mass) / 1e3, color=INK, linewidth=0.8, linestyle="--")
     finish(snap, f"{mass / 1e3:g} t falls {height:g} m: elastic pull", "[kN]", TIME)
-    snap.legend(fontsize=SMALL, frameon=False, loc="center left")
+    snap.legend(fontsize=SMALL, frameon=False, loc="upper right", bbox_to_anchor=(1.0, 0.93))
     return figure
 
 
