@@ -1,4 +1,4 @@
-"""The command line: run, check, list, report, demo, bench; hydro and dp have their own files."""
+"""The command line: run, check, list, report, demo, bench; crane, dp and hydro have their own files."""
 
 import signal
 import sys
@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from shipcrane_twin import __version__
+from shipcrane_twin.cli_crane import app as crane_app
 from shipcrane_twin.cli_dp import app as dp_app
 from shipcrane_twin.cli_hydro import app as hydro_app
 from shipcrane_twin.config.load import list_scenarios, load_scenario, read_yaml
@@ -29,6 +30,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+app.add_typer(crane_app, name="crane")
 app.add_typer(hydro_app, name="hydro")
 app.add_typer(dp_app, name="dp")
 console = Console()

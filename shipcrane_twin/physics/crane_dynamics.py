@@ -103,18 +103,28 @@ def fill_bias(chain: ChainParams, qd: Array, base: Array, work: ChainWork) -> No
     tx, ty, tz = work.origin_b[joints, 0], work.origin_b[joints, 1], work.origin_b[joints, 2]
     sx, sy, sz = _swing(wx, wy, wz, ax, ay, az, tx - px, ty - py, tz - pz)
     work.tip_acc_b[0], work.tip_acc_b[1], work.tip_acc_b[2] = fx + sx, fy + sy, fz + sz
-    _add_slides(joints, qd, work)
-    _gather_inward(joints, base, work)
+    _add_slides(
+        joints, qd, work.slide, work.rotation_b, work.origin_b, work.motion_b, work.wrench_b, work.bias
+    )
+    _gather_inward(joints, base, work.origin_b, work.screw_b, work.wrench_b, work.bias)
 
 
 @njit(cache=True)
-def _add_slides(joints: int, qd: Array, work: ChainWork) -> None:
+def _add_slides(
+    joints: int,
+    qd: Array,
+    slide: Array,
+    rotation_b: Array,
+    origin_b: Array,
+    motion_b: Array,
+    wrench_b: Array,
+    bias: Array,
+) -> None:
     """Add to wrenches and bias what the segments of telescopes differ from a rigid link.
 
     Against the link, a segment has the acceleration ``2 w x z r qd + z s'' qd^2`` along the telescope's axis z, and
     the joint feels its force times ``ds/dq = 1 + r``.
     """
-    slide, rotation_b, origin_b, motion_b = work.slide, work.rotation_b, work.origin_b, work.motion_b
     for i in range(joints):
         r, b, rate = slide[i, 0], slide[i, 4], qd[i]
         if r == 0.0:
@@ -128,16 +138,16 @@ def _add_slides(joints: int, qd: Array, work: ChainWork) -> None:
         cx, cy, cz = cross(rx, ry, rz, gx, gy, gz)
         sx, sy, sz = slide_moment(slide, rotation_b, origin_b, i, 4)
         dx, dy, dz = cross(sx, sy, sz, bx, by, bz)
-        work.wrench_b[i, 0] += r * gx + b * bx
-        work.wrench_b[i, 1] += r * gy + b * by
-        work.wrench_b[i, 2] += r * gz + b * bz
-        work.wrench_b[i, 3] += cx + dx
-        work.wrench_b[i, 4] += cy + dy
-        work.wrench_b[i, 5] += cz + dz
+        wrench_b[i, 0] += r * gx + b * bx
+        wrench_b[i, 1] += r * gy + b * by
+        wrench_b[i, 2] += r * gz + b * bz
+        wrench_b[i, 3] += cx + dx
+        wrench_b[i, 4] += cy + dy
+        wrench_b[i, 5] += cz + dz
         rx, ry, rz = rx - r * origin_b[i, 0], ry - r * origin_b[i, 1], rz - r * origin_b[i, 2]
         sx, sy, sz = _swing(wx, wy, wz, motion_b[i, 3], motion_b[i, 4], motion_b[i, 5], rx, ry, rz)
         sx, sy, sz = sx + r * motion_b[i, 6], sy + r * motion_b[i, 7], sz + r * motion_b[i, 8]
-        work.bias[i] = zx * sx + zy * sy + zz * sz + slide[i, 9] * rate * rate
+        bias[i] = zx * sx + zy * sy + zz * sz + slide[i, 9] * rate * rate
 
 
 @njit(cache=True)
@@ -162,17 +172,17 @@ def _swing(
 
 
 @njit(cache=True)
-def _gather_inward(joints: int, base: Array, work: ChainWork) -> None:
-    """Sum link wrenches from the tip inward and project them on the joints."""
+def _gather_inward(joints: int, base: Array, origin_b: Array, screw_b: Array, wrench_b: Array, bias: Array) -> None:
+    """Sum link wrenches from the tip inward and project them on the joints; arrays of `ChainWork` by themselves."""
     fx, fy, fz = -base[9], -base[10], -base[11]
     mx, my, mz = cross(
-        work.origin_b[joints, 0], work.origin_b[joints, 1], work.origin_b[joints, 2], fx, fy, fz
+        origin_b[joints, 0], origin_b[joints, 1], origin_b[joints, 2], fx, fy, fz
     )
     for i in range(joints - 1, -1, -1):
-        fx, fy, fz = fx + work.wrench_b[i, 0], fy + work.wrench_b[i, 1], fz + work.wrench_b[i, 2]
-        mx, my, mz = mx + work.wrench_b[i, 3], my + work.wrench_b[i, 4], mz + work.wrench_b[i, 5]
-        store_row(work.wrench_b, i, fx, fy, fz, mx, my, mz)
-        work.bias[i] += project_row(work.screw_b, i, fx, fy, fz, mx, my, mz)
+        fx, fy, fz = fx + wrench_b[i, 0], fy + wrench_b[i, 1], fz + wrench_b[i, 2]
+        mx, my, mz = mx + wrench_b[i, 3], my + wrench_b[i, 4], mz + wrench_b[i, 5]
+        store_row(wrench_b, i, fx, fy, fz, mx, my, mz)
+        bias[i] += project_row(screw_b, i, fx, fy, fz, mx, my, mz)
 
 
 @njit(cache=True)

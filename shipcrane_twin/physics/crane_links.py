@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.physics.arrays import Array, Ints
 from shipcrane_twin.physics.crane_chain import REVOLUTE, ChainParams, cross, place_frames
 from shipcrane_twin.physics.crane_segments import gather_segments
 
@@ -45,6 +45,8 @@ class ChainWork(NamedTuple):
         How the segments of each link trail behind it, see `crane_segments.gather_segments`.
     motion_b : float64, shape (n, 9)
         Angular velocity and acceleration of each link, and proper acceleration of its origin, in base axes.
+    along : float64, shape (n,)
+        Velocity of the tip along the wire per unit rate of each joint.
     """
 
     rotation_b: Array
@@ -60,6 +62,7 @@ class ChainWork(NamedTuple):
     body: Array
     slide: Array
     motion_b: Array
+    along: Array
 
 
 @njit(cache=True)
@@ -79,6 +82,7 @@ def new_work(joints: int) -> ChainWork:
         np.zeros((joints, 9)),
         np.zeros((joints, 10)),
         np.zeros((joints, 9)),
+        np.zeros(joints),
     )
 
 
@@ -86,22 +90,33 @@ def new_work(joints: int) -> ChainWork:
 def place_links(chain: ChainParams, q: Array, work: ChainWork) -> None:
     """Fill frames, centres of gravity, inertias and joint screws of `work` for the pose q (n,)."""
     place_frames(chain, q, work.rotation_b, work.origin_b)
-    _gather_bodies(chain, q, work.body, work.slide)
-    for i in range(chain.kind.shape[0]):
+    segments = chain.segments
+    _gather_bodies(
+        chain.mass, chain.cog, chain.inertia, segments.first, segments.rows, segments.handover, q, work.body, work.slide
+    )
+    _place_bodies(chain.kind, work.rotation_b, work.origin_b, work.body, work.cog_b, work.inertia_b, work.screw_b)
+
+
+@njit(cache=True)
+def _place_bodies(
+    kind: Ints, rotation_b: Array, origin_b: Array, body: Array, cog_b: Array, inertia_b: Array, screw_b: Array
+) -> None:
+    """Fill centres, inertias and screws; arrays by themselves: those of a tuple cost reference counting in a loop."""
+    for i in range(kind.shape[0]):
         for k in range(3):
-            work.cog_b[i, k] = (
-                work.origin_b[i, k]
-                + work.rotation_b[i, k, 0] * work.body[i, 0]
-                + work.rotation_b[i, k, 1] * work.body[i, 1]
-                + work.rotation_b[i, k, 2] * work.body[i, 2]
+            cog_b[i, k] = (
+                origin_b[i, k]
+                + rotation_b[i, k, 0] * body[i, 0]
+                + rotation_b[i, k, 1] * body[i, 1]
+                + rotation_b[i, k, 2] * body[i, 2]
             )
-        _turn_inertia(work.rotation_b, work.body, work.inertia_b, i)
-        zx, zy, zz = work.rotation_b[i, 0, 2], work.rotation_b[i, 1, 2], work.rotation_b[i, 2, 2]
-        if chain.kind[i] == REVOLUTE:
-            ux, uy, uz = cross(work.origin_b[i, 0], work.origin_b[i, 1], work.origin_b[i, 2], zx, zy, zz)
-            store_row(work.screw_b, i, ux, uy, uz, zx, zy, zz)
+        _turn_inertia(rotation_b, body, inertia_b, i)
+        zx, zy, zz = rotation_b[i, 0, 2], rotation_b[i, 1, 2], rotation_b[i, 2, 2]
+        if kind[i] == REVOLUTE:
+            ux, uy, uz = cross(origin_b[i, 0], origin_b[i, 1], origin_b[i, 2], zx, zy, zz)
+            store_row(screw_b, i, ux, uy, uz, zx, zy, zz)
         else:
-            store_row(work.screw_b, i, zx, zy, zz, 0.0, 0.0, 0.0)
+            store_row(screw_b, i, zx, zy, zz, 0.0, 0.0, 0.0)
 
 
 @njit(cache=True)
@@ -122,18 +137,25 @@ def project_row(rows: Array, i: int, a: float, b: float, c: float, d: float, e: 
 
 
 @njit(cache=True)
-def _gather_bodies(chain: ChainParams, q: Array, body: Array, slide: Array) -> None:
+def _gather_bodies(
+    mass: Array,
+    cog: Array,
+    inertia: Array,
+    first: Ints,
+    rows: Array,
+    handover: float,
+    q: Array,
+    body: Array,
+    slide: Array,
+) -> None:
     """Fill bodies (n, 9) and slides (n, 10) of all links with their segments; see `ChainWork`."""
-    for i in range(chain.kind.shape[0]):
+    for i in range(mass.shape[0]):
         for k in range(3):
-            body[i, k] = chain.cog[i, k]
-            body[i, 3 + k] = chain.inertia[i, 0, k]
-        body[i, 6], body[i, 7], body[i, 8] = chain.inertia[i, 1, 1], chain.inertia[i, 1, 2], chain.inertia[i, 2, 2]
-    first = chain.segments.first
-    for i in range(chain.kind.shape[0]):
+            body[i, k] = cog[i, k]
+            body[i, 3 + k] = inertia[i, 0, k]
+        body[i, 6], body[i, 7], body[i, 8] = inertia[i, 1, 1], inertia[i, 1, 2], inertia[i, 2, 2]
         if first[i + 1] > first[i]:
-            rows, handover = chain.segments.rows, chain.segments.handover
-            gather_segments(rows, first[i], first[i + 1], handover, q[i], chain.mass[i], i, body, slide)
+            gather_segments(rows, first[i], first[i + 1], handover, q[i], mass[i], i, body, slide)
 
 
 @njit(cache=True)

@@ -12,7 +12,7 @@ from numba import njit
 
 from shipcrane_twin.physics.arrays import Array
 from shipcrane_twin.physics.crane_chain import cross
-from shipcrane_twin.physics.crane_links import ChainWork
+from shipcrane_twin.physics.crane_links import ChainWork, project_row
 
 
 @njit(cache=True)
@@ -31,55 +31,70 @@ def hang_load(base: Array, work: ChainWork) -> None:
     pull = np.sqrt(base[9] ** 2 + base[10] ** 2 + base[11] ** 2)
     if mass <= 0.0 or pull <= 0.0:
         return
-    n = work.bias.shape[0]
-    nx, ny, nz = base[9] / pull, base[10] / pull, base[11] / pull
-    px, py, pz = work.origin_b[n, 0], work.origin_b[n, 1], work.origin_b[n, 2]
-    lx, ly, lz = cross(px, py, pz, nx, ny, nz)
-    late = (
-        nx * (work.tip_acc_b[0] - base[12])
-        + ny * (work.tip_acc_b[1] - base[13])
-        + nz * (work.tip_acc_b[2] - base[14])
-    )
-    for i in range(n):
-        # the tip's velocity along n per unit rate of the joint
-        own = along(work, i, nx, ny, nz, lx, ly, lz)
-        work.bias[i] += mass * late * own
-        for k in range(i + 1):
-            element = mass * own * along(work, k, nx, ny, nz, lx, ly, lz)
-            work.mass_matrix[i, k] += element
-            if k != i:
-                work.mass_matrix[k, i] += element
-    for i in range(n):
-        own = along(work, i, nx, ny, nz, lx, ly, lz)
-        for k, part in enumerate((nx, ny, nz, lx, ly, lz)):
-            work.momentum_b[i, k] += mass * own * part
-            work.wrench_b[i, k] += mass * late * part
+    _add_mass(
+        mass, base, pull, work.origin_b, work.tip_acc_b, work.screw_b, work.bias, work.mass_matrix, work.momentum_b,
+        work.wrench_b, work.along,
+    )  # fmt: skip
 
 
 @njit(cache=True)
-def along(
-    work: ChainWork, i: int, nx: float, ny: float, nz: float, lx: float, ly: float, lz: float
-) -> float:
-    """Return joint i's screw projected on the line through the tip along n, with moment l about the base."""
-    return (
-        work.screw_b[i, 0] * nx
-        + work.screw_b[i, 1] * ny
-        + work.screw_b[i, 2] * nz
-        + work.screw_b[i, 3] * lx
-        + work.screw_b[i, 4] * ly
-        + work.screw_b[i, 5] * lz
+def _add_mass(
+    mass: float,
+    base: Array,
+    pull: float,
+    origin_b: Array,
+    tip_acc_b: Array,
+    screw_b: Array,
+    bias: Array,
+    mass_matrix: Array,
+    momentum_b: Array,
+    wrench_b: Array,
+    along: Array,
+) -> None:
+    """Do the work of `hang_load` on arrays by themselves, ``along`` (n,) is scratch."""
+    n = bias.shape[0]
+    nx, ny, nz = base[9] / pull, base[10] / pull, base[11] / pull
+    lx, ly, lz = cross(origin_b[n, 0], origin_b[n, 1], origin_b[n, 2], nx, ny, nz)
+    late = mass * (
+        nx * (tip_acc_b[0] - base[12]) + ny * (tip_acc_b[1] - base[13]) + nz * (tip_acc_b[2] - base[14])
     )
+    for i in range(n):
+        # the tip's velocity along n per unit rate of the joint
+        own = project_row(screw_b, i, nx, ny, nz, lx, ly, lz)
+        along[i] = own
+        bias[i] += late * own
+        for k in range(i + 1):
+            element = mass * own * along[k]
+            mass_matrix[i, k] += element
+            if k != i:
+                mass_matrix[k, i] += element
+        add_row(momentum_b, i, mass * own, nx, ny, nz, lx, ly, lz)
+        add_row(wrench_b, i, late, nx, ny, nz, lx, ly, lz)
+
+
+@njit(cache=True)
+def add_row(
+    rows: Array, i: int, share: float, nx: float, ny: float, nz: float, lx: float, ly: float, lz: float
+) -> None:
+    """Add a share of six numbers to row i of an (n, 6) array."""
+    rows[i, 0] += share * nx
+    rows[i, 1] += share * ny
+    rows[i, 2] += share * nz
+    rows[i, 3] += share * lx
+    rows[i, 4] += share * ly
+    rows[i, 5] += share * lz
 
 
 @njit(cache=True)
 def add_tip_acceleration(work: ChainWork, qdd: Array, weight: float, total_b: Array) -> None:
     """Add ``weight`` times the tip's proper acceleration (3,) for joint accelerations qdd (n,) to a sum."""
+    screw_b, origin_b, tip_acc_b = work.screw_b, work.origin_b, work.tip_acc_b
     n = qdd.shape[0]
-    px, py, pz = work.origin_b[n, 0], work.origin_b[n, 1], work.origin_b[n, 2]
+    px, py, pz = origin_b[n, 0], origin_b[n, 1], origin_b[n, 2]
     for k in range(3):
-        total_b[k] += weight * work.tip_acc_b[k]
+        total_b[k] += weight * tip_acc_b[k]
     for i in range(n):
-        tx, ty, tz = cross(work.screw_b[i, 3], work.screw_b[i, 4], work.screw_b[i, 5], px, py, pz)
-        total_b[0] += weight * qdd[i] * (work.screw_b[i, 0] + tx)
-        total_b[1] += weight * qdd[i] * (work.screw_b[i, 1] + ty)
-        total_b[2] += weight * qdd[i] * (work.screw_b[i, 2] + tz)
+        tx, ty, tz = cross(screw_b[i, 3], screw_b[i, 4], screw_b[i, 5], px, py, pz)
+        total_b[0] += weight * qdd[i] * (screw_b[i, 0] + tx)
+        total_b[1] += weight * qdd[i] * (screw_b[i, 1] + ty)
+        total_b[2] += weight * qdd[i] * (screw_b[i, 2] + tz)

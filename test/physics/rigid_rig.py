@@ -1,25 +1,18 @@
 """A rigid load under a fixed tip, for tests."""
 
 import numpy as np
-from wire_rig import FAST, FIXED, WIRE
 
 from shipcrane_twin.physics.rigid_load import make_rigid
 from shipcrane_twin.physics.rigid_step import Surroundings, rigid_step, slung_state
-from shipcrane_twin.physics.splash import SplashParams, body_added_mass
+from shipcrane_twin.validation.lifting_splash import SIZE, box_in_water
+from shipcrane_twin.validation.lifting_wire import FAST, FIXED, WIRE
 
-RHO, G = 1025.0, WIRE.gravity
-SIZE = np.array([4.0, 3.0, 2.0])
+G = WIRE.gravity
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 DRY = np.array([-1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 NONE = np.zeros((0, 18))
 FLOOR = np.array([[50.0, 50.0, 1.0, 4e6, 0.2, 0.4]])
 UNDAMPED = WIRE._replace(damping_ratio=0.0)
-
-
-def splash(size=SIZE, centre=(0.0, 0.0, 0.0), **changes):
-    added = [body_added_mass(size[k - 2], size[k - 1], size[k], RHO, 0.0) for k in range(3)]
-    box = SplashParams(np.array(size, float), np.array(centre, float), 1.0, RHO, G, 1.2, 5.0, np.array(added))
-    return box._replace(**changes)
 
 
 def box_load(mass=5000.0, hook=200.0, planes=None, size=SIZE, air=0.0, water=None, centre=(0.0, 0.0, 0.0), **sling):
@@ -29,7 +22,7 @@ def box_load(mass=5000.0, hook=200.0, planes=None, size=SIZE, air=0.0, water=Non
         hook_mass=hook,
         mass=mass,
         lugs=np.array([[-half, 0.0, 0.5 * size[2]], [half, 0.0, 0.5 * size[2]]]) + np.array(centre),
-        splash=splash(size, centre) if water is None else water,
+        splash=box_in_water(size, centre) if water is None else water,
         air_drag=air,
         planes=np.zeros((0, 6)) if planes is None else planes,
         phase_max=WIRE.phase_max,

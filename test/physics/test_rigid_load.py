@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from rigid_rig import DRY, FIXED, FLOOR, LEVEL, UNDAMPED, WIRE, G, around, box_load, hanging, lying, plane, run
+from rigid_rig import DRY, FLOOR, LEVEL, UNDAMPED, G, around, box_load, hanging, lying, plane, run
 from scipy.spatial.transform import Rotation
 from wire_rig import WINCH
 
@@ -13,6 +13,7 @@ from shipcrane_twin.physics.rigid_load import LANDING, LIFT_OFFS, SLUNG, rigid_m
 from shipcrane_twin.physics.rigid_step import rigid_step, slung_state
 from shipcrane_twin.physics.winch import COASTING, POWERED, TOLD, winch_at_rest, winch_step
 from shipcrane_twin.physics.wire import STEP_MIN
+from shipcrane_twin.validation.lifting_wire import FIXED, WIRE
 
 STEP = 0.02
 

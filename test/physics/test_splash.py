@@ -4,23 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rigid_rig import RHO, SIZE, G, around, box_load, lying, run, splash
+from rigid_rig import G, around, box_load, lying, run
 from scipy.spatial.transform import Rotation
 
-from shipcrane_twin.physics.splash import body_added_mass, entered, plate_added_mass, splash_load
+from shipcrane_twin.physics.splash import body_added_mass, entered, plate_added_mass
+from shipcrane_twin.validation.lifting_splash import AREA, STILL, box_in_water, load_at, splash_rows, transit
+from shipcrane_twin.validation.lifting_splash import DENSITY as RHO
 
-STILL = np.zeros(7)
-AREA, VOLUME = 12.0, 24.0
-
-
-def load_at(depth, velocity=(0.0, 0.0, 0.0), water=STILL, rot=None, box=None, turning=(0.0, 0.0, 0.0)):
-    """Force, moment and added mass with the bottom of the upright box at a depth."""
-    force, moment, added = np.zeros(3), np.zeros(3), np.full(3, np.nan)
-    place = np.array([0.0, 0.0, water[0] - depth + 0.5 * SIZE[2]])
-    rot = np.eye(3) if rot is None else rot
-    box = splash() if box is None else box
-    splash_load(box, place, rot, np.array(velocity), np.array(turning), water, force, moment, added)
-    return force, moment, added
+VOLUME = 24.0
 
 
 def off(value, wanted):
@@ -48,18 +39,18 @@ def test_buoyancy_is_the_weight_of_the_water_displaced(measured):
         found = load_at(depth)[0][2]
         hand = 1025.0 * 9.80665 * 12.0 * min(depth, 2.0)
         measured(f"splash zone: buoyancy at {depth:g} m", off(found, hand), 0.02)
-    half = load_at(1.0, box=splash(displaced=0.5))[0][2]
+    half = load_at(1.0, box=box_in_water(displaced=0.5))[0][2]
     assert half == pytest.approx(0.5 * load_at(1.0)[0][2])
 
 
 def test_slamming_force_on_entry(measured):
     # C_s = 5, A = 12 m2, 0.8 m/s down into water that rises with 0.6 m/s: 60.3 kN
     water = np.array([0.3, 0.0, 0.0, 0.6, 0.0, 0.0, 0.0])
-    boxes = [splash(drag=0.0, slamming=c) for c in (1e-9, 5.0)]
+    boxes = [box_in_water(drag=0.0, slamming=c) for c in (1e-9, 5.0)]
     plain, slammed = (load_at(0.2, (0.0, 0.0, -0.8), water, box=box)[0][2] for box in boxes)
     measured("splash zone: slamming force", off(slammed - plain, 0.5 * 1025.0 * 5.0 * 12.0 * 1.4**2), 0.02)
-    leaving = load_at(0.2, (0.0, 0.0, 0.8), box=splash(drag=0.0))[0][2]
-    assert leaving == pytest.approx(load_at(0.2, box=splash(drag=0.0))[0][2])
+    leaving = load_at(0.2, (0.0, 0.0, 0.8), box=box_in_water(drag=0.0))[0][2]
+    assert leaving == pytest.approx(load_at(0.2, box=box_in_water(drag=0.0))[0][2])
 
 
 def test_slamming_lasts_until_the_added_mass_is_there():
@@ -97,22 +88,12 @@ def test_nothing_jumps_on_the_way_through_the_surface():
 
 
 def test_transit_at_constant_speed_has_the_hand_calculated_history(measured):
-    speed, full = 0.5, 1.462 * 1025.0 * 0.658 * np.pi / 4.0 * 36.0
-    rows = []
-    for depth in np.linspace(0.0, 4.0, 401):
-        force, _, added = load_at(depth, (0.0, 0.0, -speed))
-        hand = 1025.0 * 9.80665 * 12.0 * min(depth, 2.0) + 0.5 * 1025.0 * 1.2 * 12.0 * speed**2
-        grown = min(0.5 * 1025.0 * 5.0 * 12.0 * depth, full)
-        hand += 0.5 * 1025.0 * 5.0 * 12.0 * speed**2 if grown < full else 0.0
-        rows.append((depth, force[2], hand, added[2], grown))
-    depth, found, hand, added, grown = np.array(rows).T
-    settled = (depth > 0.05) & (np.abs(depth - full / (0.5 * 1025.0 * 5.0 * 12.0)) > 0.05)  # beyond the eased ends
-    measured("splash zone: force through the transit", np.abs(found / hand - 1.0)[settled].max(), 0.02)
-    measured("splash zone: added mass through the transit", np.abs(added - grown).max() / grown.max(), 0.02)
+    for row in splash_rows(transit()):
+        measured(f"splash zone: {row.what}", row.value, row.bar)
 
 
 def test_a_box_floats_at_its_draught_and_rights_itself(measured):
-    water = splash(drag=4.0)
+    water = box_in_water(drag=4.0)
     load = box_load(mass=12300.0, water=water)
     heeled = Rotation.from_euler("x", 8.0, degrees=True).as_quat()
     states, _ = run(load, lying(load, 0.4, quat=heeled), 0.02, 3000, surroundings=around(water=STILL))
@@ -144,8 +125,8 @@ def test_dropped_into_deep_water_it_sinks_at_its_terminal_speed(measured):
 def test_drag_brakes_and_turning_the_world_changes_nothing(depth, angles, velocity, yaw):
     rot = Rotation.from_euler("xyz", angles, degrees=True).as_matrix()
     force, moment, added = load_at(depth, velocity, rot=rot)
-    still, _, _ = load_at(depth, rot=rot, box=splash(slamming=1e-9))
-    resisted = load_at(depth, velocity, rot=rot, box=splash(slamming=1e-9))[0]
+    still, _, _ = load_at(depth, rot=rot, box=box_in_water(slamming=1e-9))
+    resisted = load_at(depth, velocity, rot=rot, box=box_in_water(slamming=1e-9))[0]
     assert (resisted - still) @ np.array(velocity) <= 1e-6 * np.linalg.norm(resisted)
     assert (added >= 0.0).all()
     turn = Rotation.from_euler("z", yaw, degrees=True).as_matrix()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from wire_rig import FIXED, WINCH, WIRE, hoist
+from wire_rig import WINCH, hoist
 
 from shipcrane_twin.physics.payload import hanging_state
 from shipcrane_twin.physics.winch import (
@@ -20,6 +20,7 @@ from shipcrane_twin.physics.winch import (
     winch_speed,
     winch_step,
 )
+from shipcrane_twin.validation.lifting_wire import FIXED, WIRE
 
 compiled = settings(deadline=None)
 

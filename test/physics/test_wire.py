@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
-from wire_rig import WIRE, stiffness_at, swing, swung_state
+from wire_rig import swung_state
 
 from shipcrane_twin.physics.wire import pull, wire_loss, wire_stiffness
+from shipcrane_twin.validation.lifting_wire import WIRE, stiffness_at, swing
 
 LENGTH, STIFF, LOSS, STATIC = 2.0, 8e6, 40.0, 1e-3
 compiled = settings(deadline=None)

@@ -3,21 +3,14 @@
 import numpy as np
 
 from shipcrane_twin.config.load import load_scenario
-from shipcrane_twin.cosim.build import winch_params, wire_params
+from shipcrane_twin.cosim.build import winch_params
 from shipcrane_twin.physics.payload import hanging_state, payload_step
-from shipcrane_twin.physics.winch import POWERED, Hold, winch_at_rest, winch_step
-from shipcrane_twin.physics.wire import STEP_MIN, wire_stiffness
+from shipcrane_twin.physics.winch import POWERED, winch_at_rest, winch_step
+from shipcrane_twin.physics.wire import STEP_MIN
+from shipcrane_twin.validation.lifting_wire import FIXED, WIRE, stiffness_at
 
 SCENARIO = load_scenario("case2")
-WIRE = wire_params(SCENARIO)
 WINCH = winch_params(SCENARIO)
-FIXED = np.array([1.0, -2.0, 12.0, 0.0, 0.0, 0.0])
-FAST = Hold(pull=np.inf, mass=1e3, leak=0.0, sheave_friction=0.0, length_min=0.0, length_end=np.inf)
-"""A drum that holds any pull."""
-
-
-def stiffness_at(length, wire=WIRE):
-    return wire_stiffness(wire.elastic_modulus, wire.diameter, wire.fill_factor, length)
 
 
 def swung_state(angle, length, mass, wire=WIRE):
@@ -26,21 +19,6 @@ def swung_state(angle, length, mass, wire=WIRE):
     reach = length + mass * wire.gravity * np.cos(angle) / stiffness_at(length, wire)
     state[:3] = FIXED[:3] + reach * np.array([np.sin(angle), 0.0, -np.cos(angle)])
     return state
-
-
-def held_step(wire, state, tip_prev, tip_next, step_s, rate=0.0):
-    """One macro step with the drum told to go on at the same rate, whatever the pull."""
-    state = state.copy()
-    state[7] = rate
-    return payload_step(wire, FAST, state, rate, rate, tip_prev, tip_next, step_s)
-
-
-def swing(state, step_s, count, wire=WIRE):
-    """States at the start and after each of `count` macro steps under the fixed tip, with the drum still."""
-    states = [state]
-    for _ in range(count):
-        states.append(held_step(wire, states[-1], FIXED, FIXED, step_s)[0])
-    return np.array(states)
 
 
 def hoist(state, step_s, count, command=0.0, drive=POWERED, winch=WINCH, wire=WIRE, at_rest=None, by_length=False):
