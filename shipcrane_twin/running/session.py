@@ -102,7 +102,7 @@ def conclude(
     signals = recorded_signals(scenario, folder) if record else None
     complete = not failure and not interrupted
     if not complete and not result["steps"] and signals is not None:
-        result["steps"] = recorded_steps(signals, scenario.step_ns)  # who counts them was the one that ended
+        result["steps"] = recorded_steps(signals, scenario)  # who counts them was the one that ended
     simulated_s = result["steps"] * scenario.step_ns / 1e9
     wall_s = result["wall_time_s"]
     summary: dict[str, Any] = {
@@ -151,7 +151,14 @@ def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:
     return read_signals(bag)
 
 
-def recorded_steps(signals: Signals, step_ns: int) -> int:
-    """Return the last step of which every subsystem's messages are there; 0 if there is none."""
-    stamps = [signals.series[t.name].stamp_ns for t in TOPICS if t.rate == "step" and t.name in signals.series]
-    return min((int(one[-1]) // step_ns if len(one) else 0 for one in stamps), default=0)
+def recorded_steps(signals: Signals, scenario: Scenario) -> int:
+    """Return the last step of which every subsystem's messages are there; 0 if there is none.
+
+    Of telemetry the next message is not due until its period is over.
+    """
+    step_ns = scenario.step_ns
+    ahead = {"step": 0, "telemetry": (scenario.telemetry_every - 1) * step_ns}
+    found = {name: one.stamp_ns for name, one in signals.series.items()}
+    found |= {name: one.stamp_ns for name, one in signals.joints.items()}
+    stamps = [(found[t.name], ahead[t.rate]) for t in TOPICS if t.rate in ahead and t.name in found]
+    return min(((int(one[-1]) + more) // step_ns if len(one) else 0 for one, more in stamps), default=0)
