@@ -168,7 +168,13 @@ def recorded_signals(scenario: Scenario, folder: Path) -> Signals | None:
 
 
 def recorded_steps(signals: Signals, scenario: Scenario) -> int:
-    """Return the last step of which every subsystem's messages are there; 0 if there is none."""
-    every_step = [topic.name for topic in topics_of(scenario) if topic.rate == "step"]
-    stamps = [signals.series[name].stamp_ns for name in every_step if name in signals.series]
-    return min((int(one[-1]) // scenario.step_ns if len(one) else 0 for one in stamps), default=0)
+    """Return the last step of which every subsystem's messages are there; 0 if there is none.
+
+    Of telemetry the next message is not due until its period is over.
+    """
+    step_ns = scenario.step_ns
+    ahead = {"step": 0, "telemetry": (scenario.telemetry_every - 1) * step_ns}
+    found = {name: one.stamp_ns for name, one in signals.series.items()}
+    found |= {name: one.stamp_ns for name, one in signals.joints.items()}
+    stamps = [(found[t.name], ahead[t.rate]) for t in topics_of(scenario) if t.rate in ahead and t.name in found]
+    return min(((int(one[-1]) + more) // step_ns if len(one) else 0 for one, more in stamps), default=0)

@@ -1,4 +1,5 @@
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from shipcrane_twin.record.bag import RECORDED, BagWriter
 from shipcrane_twin.running import session
 from shipcrane_twin.running.folder import make_run_folder
 from shipcrane_twin.running.graph import NodeFailure
-from shipcrane_twin.running.session import graph_result, run_scenario
+from shipcrane_twin.running.session import graph_result, recorded_steps, run_scenario
 
 
 @pytest.fixture
@@ -50,6 +51,17 @@ def test_an_interrupted_inline_run_keeps_what_it_has(scenario, tmp_path):
     assert outcome.summary["sim_duration_s"] == pytest.approx(5.0, abs=0.1)
     assert outcome.summary["gaps"] == []
     assert outcome.summary["messages"]["/vessel/odom"] == pytest.approx(251, abs=5)
+
+
+@pytest.mark.parametrize(("telemetry_last", "steps"), [(135, 137), (130, 134)])
+def test_a_step_counts_as_recorded_once_its_telemetry_is_there_too(scenario, telemetry_last, steps):
+    def stamps(last, every):
+        return SimpleNamespace(stamp_ns=np.arange(0, last + 1, every) * scenario.step_ns)
+
+    kinds = {"step": stamps(137, 1), "telemetry": stamps(135, 5)}
+    series = {topic.name: kinds[topic.rate] for topic in TOPICS if topic.rate in kinds}
+    series["/dp/estimate"] = stamps(telemetry_last, 5)
+    assert recorded_steps(SimpleNamespace(series=series, joints={}), scenario) == steps
 
 
 class FakeGraph:
