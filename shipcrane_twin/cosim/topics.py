@@ -345,7 +345,7 @@ TOPICS: tuple[Topic, ...] = (
         name="/diagnostics",
         type=DIAGNOSTICS,
         publisher="clock",
-        others=("vessel", "crane", "payload"),
+        others=("crane", "payload", "vessel"),
         rate="irregular",
         about="State of the lockstep, DP, crane and load, once per second of wall time: who is silent, what is broken.",
     ),

@@ -10,7 +10,7 @@ from importlib import import_module
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, TwistStamped
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
@@ -28,6 +28,7 @@ class Operator:
     def __init__(self):
         self.node = Node("test_operator")
         self.command = self.node.create_publisher(JointState, COMMAND, 10)
+        self.tip = self.node.create_publisher(TwistStamped, "/crane/tip_command", 10)
         self.setpoint = self.node.create_publisher(PoseStamped, "/dp/setpoint", 10)
         self.enable_client = self.node.create_client(SetBool, "/dp/enable")
         self.pause_client = self.node.create_client(SetBool, "/clock/pause")

@@ -114,11 +114,12 @@ def test_a_bag_that_was_never_closed_is_mended(scenario, fake_graph, tmp_path):
 
 def test_the_result_of_a_graph_is_put_together_from_its_nodes(tmp_path):
     results = {"clock": {"steps": 9, "wall_time_s": 2.5}, "vessel": {"digest": "b"}, "crane": {"digest": "a"}}
+    results["payload"] = {"events": {"snaps": 2.0}}
     (tmp_path / "nodes").mkdir()
     for name, result in results.items():
         (tmp_path / "nodes" / f"{name}.json").write_text(json.dumps(result))
     digest = state_digest({"crane": "a", "vessel": "b"})
-    assert graph_result(tmp_path) == {"steps": 9, "wall_time_s": 2.5, "state_digest": digest}
+    assert graph_result(tmp_path) == {"steps": 9, "wall_time_s": 2.5, "state_digest": digest, "load": {"snaps": 2.0}}
 
 
 def test_all_but_the_recorders_own_progress_is_recorded():
