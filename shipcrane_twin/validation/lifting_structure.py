@@ -12,8 +12,6 @@ import numpy as np
 from shipcrane_twin.config.load import load_scenario
 from shipcrane_twin.config.scenario import NS_PER_S
 from shipcrane_twin.config.settings import ConfigError
-from shipcrane_twin.control.load_limiter import radius_and_slopes
-from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.inline import InlineRun
 from shipcrane_twin.cosim.subsystems.crane import Crane
 from shipcrane_twin.hydro.compare import Row
@@ -86,13 +84,11 @@ def overload() -> Overload:
     run = InlineRun(scenario)
     crane = run.subsystem("crane")
     assert isinstance(crane, Crane)
-    chain, n = build.crane_chain(scenario.crane), len(scenario.joint_names)
     rows = []
     for k in run.steps():
-        seen = crane.load_state
-        radius = radius_and_slopes(chain, run.latest["/crane/joint_states"][:n])[0]
-        rows.append((k * scenario.step_ns / NS_PER_S, radius, seen["utilisation"], seen["warning"],
-                     not seen["hoisting_allowed"]))  # fmt: skip
+        radius, _, _, used, cut_out = run.latest["/crane/load_state"]
+        warning = any("overload" in told for told in crane.warnings())
+        rows.append((k * scenario.step_ns / NS_PER_S, radius, used, warning, cut_out))
     time_s, radius, used, warning, cut_out = np.array(rows, dtype=np.float64).T
     return Overload(time_s, radius, used, warning, cut_out, np.array(scenario.crane.load_chart))
 
