@@ -90,7 +90,6 @@ class Positioning:
         dp = scenario.dp
         self._scenario = scenario
         self._dp, self._gravity = dp, scenario.constants.gravity_m_s2
-        update_s = dp.period_ms * 1e-3
         mass, damping = dp_build.ship_3dof(scenario)
         self.thrusters = dp_build.propulsion_params(scenario)
         self._allocation = dp_build.allocation_of(scenario, self.thrusters)
@@ -101,7 +100,7 @@ class Positioning:
         self._wind = build.wind_params(scenario)
         self._passive = dp_build.passive_of(dp, mass, damping)
         self._ekf = dp_build.ekf_of(dp, mass, damping)
-        self._sensors = dp_build.sensors_of(dp.sensors, update_s)
+        self._sensors = dp_build.sensors_of(dp.sensors, dp_build.seconds_of(dp.period_ms))
 
         self._rng = stream(scenario, SENSORS)
         self._sensor_states = {
@@ -176,6 +175,8 @@ class Positioning:
             return
         stopped = self.faults.stopped
         self.faults.happen(event)
+        power_w = self._scenario.vessel.power_total_max_kw * 1e3
+        self.thrusters = self.thrusters._replace(power_total_max=power_w * self.faults.power_share)
         if self.faults.stopped != stopped:
             self._allocation = dp_build.allocation_of(self._scenario, self.thrusters, self.faults.stopped)
             self._allocation_state[:, PIECE] = NO_PIECE
@@ -184,7 +185,8 @@ class Positioning:
         """Return what an operator should know now."""
         told = self.faults.told()
         age = observer_age(self._observer)
-        lost = [axis for axis, seconds in zip(("east", "north", "heading"), age, strict=True) if seconds > self._lost_s]
+        after_s = self._dp.observer.lost_after_s
+        lost = [axis for axis, seconds in zip(("east", "north", "heading"), age, strict=True) if seconds > after_s]
         if lost:
             told.append(f"dead reckoning: no {', '.join(lost)} for {age.max():.0f} s")
         if self.on and (np.abs(self._short) > SHORT_SHARE * self._controller.load_max).any():
@@ -195,10 +197,6 @@ class Positioning:
         """Return how far the estimated place [m] and heading [rad] are off the set-point."""
         east, north, yaw = self.pose - self._setpoint
         return float(np.hypot(east, north)), abs(float(wrap_angle(yaw)))
-
-    @property
-    def _lost_s(self) -> float:
-        return self._dp.observer.lost_after_s
 
     def _measure(self, truth: Truth) -> Array:
         """Run the sensors; return position of the CoG and heading (3,) as far as they are new."""

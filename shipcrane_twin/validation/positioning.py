@@ -19,6 +19,7 @@ from shipcrane_twin.physics.wind import wind_load
 SLOW_HZ = 0.05
 """Below it motion counts as slow; the waves here are at 0.1 Hz."""
 
+AXES = ("surge", "sway", "yaw")
 HORIZONTAL = [0, 1, 5]
 """Columns of surge, sway and yaw in a wrench."""
 

@@ -10,10 +10,10 @@ import numpy as np
 from shipcrane_twin.control.loop import OMEGA, LoopReport
 from shipcrane_twin.hydro.figure_style import COLOURS, INK, PALE, SMALL, blank, finish, grid, legend_below
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.validation.positioning import Ride, off_setpoint, slow
+from shipcrane_twin.validation.positioning import AXES, Ride, off_setpoint, slow
 from shipcrane_twin.validation.positioning_faults import AWAY, FAULT_S
 from shipcrane_twin.validation.positioning_moves import azimuth_rates
-from shipcrane_twin.validation.positioning_station import AXES, BAND_HZ, BIAS_HZ, observer_error, spectra, true_bias
+from shipcrane_twin.validation.positioning_station import BAND_HZ, BIAS_HZ, observer_error, spectra, true_bias
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,13 +8,12 @@ from scipy import signal
 from shipcrane_twin.cosim import dp_build
 from shipcrane_twin.hydro.compare import Row
 from shipcrane_twin.physics.arrays import Array
-from shipcrane_twin.validation.positioning import Ride, during, off_setpoint, rms, slow, to_level
+from shipcrane_twin.validation.positioning import AXES, Ride, during, off_setpoint, rms, slow, to_level
 
 NO_FILTER = ("dp.observer.kind=none",)
 UNBIASED = ("dp.sensors.position.bias_std_m=0.0",)
 """A position reference without drift, which no observer can tell from motion."""
 
-AXES = ("surge", "sway", "yaw")
 BAND_HZ = (0.06, 0.2)
 SEGMENT_S = 100.0
 STEADY_S, SETTLED_S = 250.0, 200.0

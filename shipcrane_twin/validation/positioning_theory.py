@@ -16,8 +16,8 @@ from shipcrane_twin.control.observer import passive_gains
 from shipcrane_twin.cosim import dp_build
 from shipcrane_twin.hydro.compare import Row
 from shipcrane_twin.physics.arrays import Array
+from shipcrane_twin.validation.positioning import AXES
 
-AXES = ("surge", "sway", "yaw")
 WAVE_PERIOD_S = 10.0
 """Peak period of E1 and E2."""
 

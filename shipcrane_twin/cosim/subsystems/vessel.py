@@ -52,7 +52,7 @@ class Vessel:
         self._wind_w = inputs["/environment/wind"][:3]
         self._memory = vessel_macro_step(
             self._params,
-            dp.thrusters._replace(power_total_max=dp.thrusters.power_total_max * dp.faults.power_share),
+            dp.thrusters,
             self._memory,
             dp.command,
             dp.faults.thruster,
