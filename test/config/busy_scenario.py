@@ -153,6 +153,25 @@ def overloaded(row):
     return data
 
 
+def relieved():
+    """A load that the limiter cuts out, and that is gone before the crane has stood for long."""
+    data = overloaded(3)
+    data["payload"]["mass_kg"] *= 1.01
+    data["crane"]["load_limiter"]["filter_s"] = 3.0
+    data["events"][0]["at_s"] = 0.1
+    for move in data["operations"]:
+        move["to_s"] = 0.8
+    return data
+
+
+def tucked():
+    """The load hangs inboard of the main boom, so that its cylinder pulls, with little pressure."""
+    data = at_ends(-1)
+    data["crane"]["initial_joints"][3] = 8.0
+    data["crane"]["links"][1]["drive"]["pressure_max_pa"] = 1e4
+    return data
+
+
 def slow():
     """Drives and a reference at their greatest speed, and thrusters at their greatest push."""
     data = busy()

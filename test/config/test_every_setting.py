@@ -13,7 +13,9 @@ from busy_scenario import (
     look,
     overloaded,
     put,
+    relieved,
     slow,
+    tucked,
     weak,
     without_power,
 )
@@ -102,7 +104,7 @@ def is_row_direction(path):
 
 PATHS = list(numbers(busy()))
 STAGES = {"busy": busy(), "weak": weak(), "slow": slow(), "ekf": filtered(), "hungry": hungry()}
-STAGES |= {"long": at_ends(1), "short": at_ends(-1)}
+STAGES |= {"long": at_ends(1), "short": at_ends(-1), "tucked": tucked()}
 
 
 def test_every_number_changes_the_run_or_is_listed():
@@ -118,7 +120,7 @@ def test_every_number_changes_the_run_or_is_listed():
         if path[:2] == ("crane", "load_chart"):
             here, known = {"overloaded": overloaded(path[2])}, {}
         elif path[:2] == ("crane", "load_limiter"):
-            here, known = {"overloaded": overloaded(3)}, {}
+            here, known = {"overloaded": overloaded(3), "relieved": relieved()}, {}
         if not matters(path, here, known):
             silent.append(".".join(map(str, path)))
     assert sorted(silent) == sorted(WITHOUT_EFFECT_ON_PHYSICS)

@@ -93,6 +93,18 @@ class Operator:
         message.header.stamp.sec, message.header.stamp.nanosec = stamp
         self.command.publish(message)
 
+    def place(self, names, positions):
+        self.wait(lambda: self.command.get_subscription_count() >= 2)
+        self.command.publish(JointState(name=names, position=positions))
+
+    def move_tip(self, velocity, frame):
+        self.wait(lambda: self.tip.get_subscription_count() >= 1)
+        message = TwistStamped()
+        message.header.frame_id = frame
+        linear = message.twist.linear
+        linear.x, linear.y, linear.z = velocity
+        self.tip.publish(message)
+
     def say_bytes(self, text):
         self.wait(lambda: self.command.get_subscription_count() >= 2)
         self.command.publish(bytes.fromhex(text))

@@ -210,3 +210,41 @@ def test_an_operators_command_moves_boom_and_winch_and_is_in_the_bag(tmp_path):
     lifted = np.ptp(joints.position[:, joints.names.index("boom")])
     assert lifted == pytest.approx(0.02 * span_s, rel=0.25)
     assert np.ptp(winch.position[:, 0]) == pytest.approx(0.1 * span_s, rel=0.25)
+
+
+def test_an_operator_sends_the_winch_to_a_length_and_moves_the_tip(tmp_path):
+    scenario = write_lively(tmp_path, operations=[], events=[])
+    domain = free_domain()
+    said = {}
+    with operator_in(domain) as operator:
+
+        def command(status):
+            now = status["time_s"]
+            if now > 3.0 and "winch" not in said:
+                said["winch"] = now
+                operator.place(names=["winch"], positions=[1.6])
+                operator.move_tip(velocity=[0.0, 0.0, 0.1], frame="base_link")
+            if now > 5.0 and "tip" not in said:
+                said["tip"] = now
+                operator.move_tip(velocity=[0.0, 0.0, 0.1], frame="crane_base")
+
+        operator.topics()  # it is up before the run begins
+        run_graph(
+            tmp_path / "run",
+            scenario,
+            overrides=["lockstep.speed=5.0", "crane.servo.tip_command_timeout_s=4.0"],
+            domain=domain,
+            record=True,
+            progress=command,
+        )
+    log = (tmp_path / "run" / "log" / "crane.log").read_text()
+    assert log.count("/crane/tip_command refused: its frame is 'base_link', expected crane_base or map") == 1
+
+    signals = read_signals(tmp_path / "run" / "bag")
+    length = signals.joints["/winch/joint_states"].position[:, 0]
+    assert length[0] == 1.0
+    assert length[-1] == pytest.approx(1.6, abs=1e-3)
+    applied = signals.joints["/crane/joint_command_applied"]
+    moving_s = applied.stamp_ns[np.abs(applied.velocity).max(axis=1) > 0.0] / 1e9
+    assert said["tip"] < moving_s[0] < said["tip"] + 3.0
+    assert np.ptp(moving_s) == pytest.approx(4.0, abs=0.15)
