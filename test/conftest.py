@@ -1,10 +1,14 @@
 import pytest
 
-FIGURES = pytest.StashKey[list[str]]()
+FIGURE = "measured against its bar"
 
 
-def pytest_configure(config):
-    config.stash[FIGURES] = []
+def pytest_collection_modifyitems(items):
+    """Where several processes share the tests, keep a file's together, and all that start graphs in one process."""
+    for item in items:
+        graph = item.get_closest_marker("ros") is not None
+        item.add_marker(pytest.mark.xdist_group("graphs" if graph else item.path.name))
+    items.sort(key=lambda item: item.get_closest_marker("ros") is None)  # the longest group first
 
 
 @pytest.fixture
@@ -13,14 +17,19 @@ def measured(request):
 
     def hold(what, value, bar, unit=""):
         assert value <= bar, f"{what}: {value:.3g} {unit}, bar {bar:g}"
-        request.config.stash[FIGURES].append(f"{what:<86} {value:10.3g} {unit:<6} bar {bar:g}")
+        request.node.user_properties.append((FIGURE, f"{what:<86} {value:10.3g} {unit:<6} bar {bar:g}"))
 
     return hold
 
 
-def pytest_terminal_summary(terminalreporter, config):
-    figures = config.stash[FIGURES]
+def pytest_terminal_summary(terminalreporter):
+    figures = [
+        line
+        for report in terminalreporter.getreports("passed") + terminalreporter.getreports("failed")
+        for key, line in report.user_properties
+        if key == FIGURE
+    ]
     if figures:
-        terminalreporter.section("measured against the bars")
+        terminalreporter.section(FIGURE)
         for line in sorted(figures):
             terminalreporter.write_line(line)
