@@ -3,12 +3,27 @@ import pytest
 FIGURE = "measured against its bar"
 
 
+def starts_graphs(file):
+    """Whether the tests of a file start graphs of processes: never two of them at once."""
+    return "integration/" in file or file.endswith("test_msg_docs.py")
+
+
 def pytest_collection_modifyitems(items):
-    """Where several processes share the tests, keep a file's together, and all that start graphs in one process."""
-    for item in items:
-        graph = item.get_closest_marker("ros") is not None
-        item.add_marker(pytest.mark.xdist_group("graphs" if graph else item.path.name))
-    items.sort(key=lambda item: item.get_closest_marker("ros") is None)  # the longest group first
+    """Put the graphs first: where several processes share the tests, theirs has the most to do."""
+    items.sort(key=lambda item: not starts_graphs(item.nodeid.partition("::")[0]))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Let several processes share the tests by file, and one have all that start graphs."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFile(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            file = nodeid.partition("::")[0]
+            return "graphs" if starts_graphs(file) else file
+
+    return ByFile(config, log)
 
 
 @pytest.fixture
