@@ -26,7 +26,7 @@ GUNNERUS = ROOT / "config" / "vessels" / "gunnerus"
 
 def hydro(*words):
     """Run a command in this process and return what it came to; bad input is its exception."""
-    return CliRunner(env={"COLUMNS": "250", "NO_COLOR": "1"}).invoke(cli_hydro.app, [str(word) for word in words])
+    return CliRunner(env={"COLUMNS": "400", "NO_COLOR": "1"}).invoke(cli_hydro.app, [str(word) for word in words])
 
 
 @pytest.mark.parametrize(
