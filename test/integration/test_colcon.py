@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
 NAME = "shipcrane_twin"
-NODES = ["clock", "crane", "environment", "payload", "recorder", "vessel"]
+NODES = sorted(path.stem for path in (ROOT / NAME / "nodes").glob("[a-z]*.py"))
 
 pytestmark = pytest.mark.slow
 
