@@ -112,6 +112,8 @@ def show(
     beside = load_database(other) if other else None
     pictures = draw(data, out, other=beside, mass6=mass6, mesh=mesh if len(mesh[1]) else None)
     table = Table(box=None, show_header=False)
+    table.add_column()
+    table.add_column(overflow="fold")  # paths are not cut
     table.add_row("ship", data.name)
     table.add_row("from", data.source)
     table.add_row("displaces", f"{data.volume:.2f} m3, {data.mass / 1e3:.1f} t")

@@ -100,7 +100,8 @@ def nonsense(names: Sequence[str], seed: int) -> Operator:
         if left == 0:
             left = int(rng.integers(20, 400))
             kind = str(rng.choice(["silence", "held", "reversal", "flood", "wrong"]))
-            held = rng.choice([-1.0, 1.0], len(names)) * rng.choice([0.02, 0.1, 10.0])
+            signs = rng.choice(np.array([-1.0, 1.0]), len(names))
+            held = signs * float(rng.choice([0.02, 0.1, 10.0]))
         left -= 1
         if kind == "held":
             return [(names, list(held))]

@@ -64,10 +64,10 @@ def test_pause_stops_at_a_whole_step_and_step_gives_exactly_one_more(live):
     done, message = live.operator.pause(data=True)
     assert done
     step = int(message.removeprefix("paused at step "))
-    time.sleep(0.3)
-    assert live.steps() == [step, step]
+    wait_until(lambda: live.steps() == [step, step], patience_s=5.0)
     for more in (1, 2, 3):
         assert live.operator.step() == [True, f"step {step + more}"]
+        wait_until(lambda more=more: live.steps() == [step + more, step + more], patience_s=5.0)
         time.sleep(0.3)
         assert live.steps() == [step + more, step + more]
     assert wait_until(lambda: live.run.status()["state"] == "paused", patience_s=1.0)
@@ -81,18 +81,24 @@ def test_a_running_clock_does_no_single_steps(live):
     assert "pause it first" in message
 
 
+def keeps_pace(live, speed):
+    """Whether the run keeps its speed over a second and a half, some time when the machine lets it."""
+
+    def kept():
+        before, began = live.time_s(), time.monotonic()
+        time.sleep(1.5)
+        return (live.time_s() - before) / (time.monotonic() - began) == pytest.approx(speed, rel=0.15)
+
+    return wait_until(kept, patience_s=20.0)
+
+
 def test_speed_one_is_real_time(live):
-    before, began = live.time_s(), time.monotonic()
-    time.sleep(2.0)
-    simulated, passed = live.time_s() - before, time.monotonic() - began
-    assert simulated / passed == pytest.approx(1.0, abs=0.15)
+    assert keeps_pace(live, 1.0)
 
 
 def test_speed_can_be_changed_while_it_runs(live):
     assert live.operator.set(node="clock", name="speed", value=4.0) == [True, ""]
-    before, began = live.time_s(), time.monotonic()
-    time.sleep(1.5)
-    assert (live.time_s() - before) / (time.monotonic() - began) == pytest.approx(4.0, abs=0.8)
+    assert keeps_pace(live, 4.0)
 
 
 @pytest.mark.parametrize("value", [-1.0, float("inf"), float("nan"), "fast", 2])
