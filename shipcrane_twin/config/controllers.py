@@ -72,6 +72,11 @@ def joints_of(controller: ControllerConfig) -> tuple[str, ...]:
     return ANTI_SWAY_JOINTS if isinstance(controller, AntiSwayConfig) else ("winch",)
 
 
+def steered_joints(controllers: Collection[ControllerConfig]) -> frozenset[str]:
+    """Return the joints that controllers command: they take no positions."""
+    return frozenset(joint for one in controllers for joint in joints_of(one))
+
+
 def replaces(controller: ControllerConfig) -> bool:
     """Whether a controller's velocities stand in place of the operator's; else they are added."""
     return controller.mode == "replace" if isinstance(controller, ExternalConfig) else controller.kind == "anti_sway"

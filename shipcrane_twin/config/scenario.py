@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
-from shipcrane_twin.config.controllers import ControllerConfig, controller_problems, joints_of
+from shipcrane_twin.config.controllers import ControllerConfig, controller_problems, steered_joints
 from shipcrane_twin.config.crane import CraneConfig, NotNegative, Positive
 from shipcrane_twin.config.dp import DpConfig
 from shipcrane_twin.config.environment import WAVE_KEYS, EnvironmentConfig
@@ -213,7 +213,7 @@ def operation_problems(scenario: Scenario) -> list[tuple[list[str | int], str]]:
     """Check joints, times and units of the operations and the times of events."""
     found: list[tuple[list[str | int], str]] = []
     kinds = {link.joint: link.kind for link in scenario.crane.links} | {WINCH: "prismatic"}
-    steered = {joint for controller in scenario.controllers for joint in joints_of(controller)}
+    steered = steered_joints(scenario.controllers)
     busy: dict[str, list[tuple[float, float]]] = {}
     for i, move in enumerate(scenario.operations):
         here: list[str | int] = ["operations", i]

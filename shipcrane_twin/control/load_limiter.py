@@ -172,8 +172,8 @@ def load_state(params: LoadLimiterParams, state: Array, radius: float) -> Array:
 
 
 def hoisting_allowed(state: Array) -> bool:
-    """Return whether the winch may hoist."""
-    return not state[CUT_OUT] > 0.0
+    """Return whether the winch may hoist, by the limiter's state (3,) or by what is told of it, `load_state` (5,)."""
+    return not state[-1] > 0.0
 
 
 def warned(params: LoadLimiterParams, state: Array) -> bool:

@@ -147,3 +147,12 @@ def order_of(move: OperationConfig) -> tuple[int, float]:
             if value is not None:
                 return mode, float(value)
     raise ValueError(f"the operation {move.label!r} has neither velocity nor position; expected one")
+
+
+def applied(mode: Ints, command: Array, places: Array) -> Array:
+    """Return what joints were told as positions (n,) and velocities (n,) in one array.
+
+    A joint told a velocity has its own place as position, one told a position the velocity zero.
+    """
+    by_position = mode == POSITION
+    return np.concatenate((np.where(by_position, command, places), np.where(by_position, 0.0, command)))

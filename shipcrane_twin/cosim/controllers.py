@@ -83,11 +83,6 @@ def topics_of(scenario: Scenario) -> tuple[Topic, ...]:
     return (*table, *(controller_topic(one) for one in scenario.controllers))
 
 
-def steered_joints(scenario: Scenario) -> frozenset[str]:
-    """Return the joints that controllers command: they take no positions."""
-    return frozenset(joint for one in scenario.controllers for joint in joints_of(one))
-
-
 def tip_holders(scenario: Scenario) -> list[str]:
     """Return the controllers that command joints of the crane in the operator's place: they take no tip commands."""
     return [one.name for one in heard(scenario, scenario.joint_names) if replaces(one)]

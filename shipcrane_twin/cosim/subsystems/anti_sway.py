@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shipcrane_twin.config.controllers import ANTI_SWAY_JOINTS, AntiSwayConfig
+from shipcrane_twin.config.controllers import ANTI_SWAY_JOINTS, AntiSwayConfig, steered_joints
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.control.anti_sway import (
     AntiSwayParams,
@@ -13,7 +13,6 @@ from shipcrane_twin.control.anti_sway import (
 )
 from shipcrane_twin.cosim import build
 from shipcrane_twin.cosim.commands import JointCommands
-from shipcrane_twin.cosim.controllers import steered_joints
 from shipcrane_twin.cosim.subsystems.base import Signals
 from shipcrane_twin.cosim.time import seconds
 from shipcrane_twin.physics.crane_chain import tip_state
@@ -29,7 +28,7 @@ class AntiSway:
         self._state = anti_sway_start(self._params)
         self._step_ns = scenario.step_ns
         self._length = scenario.winch.initial_length_m
-        self.commands = JointCommands(ANTI_SWAY_JOINTS, scenario.operations, steered_joints(scenario))
+        self.commands = JointCommands(ANTI_SWAY_JOINTS, scenario.operations, steered_joints(scenario.controllers))
 
     def start(self) -> Signals:
         """Return the rates for the first step; the load hangs at rest."""

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from shipcrane_twin.config.controllers import steered_joints
 from shipcrane_twin.config.scenario import Scenario
 from shipcrane_twin.control.load_limiter import (
     CUT_OUT,
@@ -16,8 +17,8 @@ from shipcrane_twin.control.load_limiter import (
 )
 from shipcrane_twin.control.tip_velocity import tip_joint_rates, tip_joint_rates_level
 from shipcrane_twin.cosim import build
-from shipcrane_twin.cosim.commands import JointCommands
-from shipcrane_twin.cosim.controllers import ControllerCommands, steered_joints, tip_holders
+from shipcrane_twin.cosim.commands import JointCommands, applied
+from shipcrane_twin.cosim.controllers import ControllerCommands, tip_holders
 from shipcrane_twin.cosim.coupling import SCHEMES
 from shipcrane_twin.cosim.crane_report import SeenFlags, condition_of, limiter_warnings
 from shipcrane_twin.cosim.initial import at_rest
@@ -29,7 +30,7 @@ from shipcrane_twin.physics.crane_base import base_motion, crane_macro_step, tip
 from shipcrane_twin.physics.crane_chain import tip_state
 from shipcrane_twin.physics.crane_cylinders import TRIANGLE, joint_rates_per_length, lengths_from_joints
 from shipcrane_twin.physics.crane_dynamics import base_wrench, bias_forces
-from shipcrane_twin.physics.crane_reference import POSITION, VELOCITY
+from shipcrane_twin.physics.crane_reference import VELOCITY
 from shipcrane_twin.physics.frames import matrix_from_quat, rotate_to_body
 
 FAILURES = {
@@ -69,7 +70,10 @@ class Crane:
         self._telemetry_every = scenario.telemetry_every
         self._carries = SCHEMES[scenario.coupling].carries_inertia
         self.commands = JointCommands(
-            scenario.joint_names, scenario.operations, steered_joints(scenario), crane.servo.tip_command_timeout_s
+            scenario.joint_names,
+            scenario.operations,
+            steered_joints(scenario.controllers),
+            crane.servo.tip_command_timeout_s,
         )
         self._tip_holders = tip_holders(scenario)
         self._controllers = ControllerCommands(scenario, scenario.joint_names)
@@ -205,12 +209,3 @@ class Crane:
         slopes = joint_rates_per_length(self._drives, q)[booms]  # the cylinder's effective lever arm, inverted
         rates, forces = qd[booms] / slopes, self._effort[booms] * slopes
         return np.concatenate((q, lengths, qd, rates, self._effort, forces))
-
-
-def applied(mode: Ints, command: Array, places: Array) -> Array:
-    """Return what joints were told as positions (n,) and velocities (n,) in one array.
-
-    A joint told a velocity has its own place as position, one told a position the velocity zero.
-    """
-    by_position = mode == POSITION
-    return np.concatenate((np.where(by_position, command, places), np.where(by_position, 0.0, command)))

@@ -4,14 +4,15 @@ import math
 
 import numpy as np
 
+from shipcrane_twin.config.controllers import steered_joints
 from shipcrane_twin.config.scenario import WINCH, Scenario
+from shipcrane_twin.control.load_limiter import hoisting_allowed
 from shipcrane_twin.cosim import build
-from shipcrane_twin.cosim.commands import JointCommands
-from shipcrane_twin.cosim.controllers import ControllerCommands, steered_joints
+from shipcrane_twin.cosim.commands import JointCommands, applied
+from shipcrane_twin.cosim.controllers import ControllerCommands
 from shipcrane_twin.cosim.hung_loads import hung_load
 from shipcrane_twin.cosim.initial import at_rest
 from shipcrane_twin.cosim.subsystems.base import Signals
-from shipcrane_twin.cosim.subsystems.crane import applied
 from shipcrane_twin.cosim.time import NS_PER_S, seconds
 from shipcrane_twin.physics.arrays import Array, Ints
 from shipcrane_twin.physics.crane_reference import POSITION, VELOCITY
@@ -33,9 +34,6 @@ DRIVES = {"power_failure": BRAKED, "winch_coasts": COASTING, "winch_brakes": BRA
 
 WITHOUT_POWER = {COASTING: "the drum coasts", BRAKED: "the brake holds", LEAKING: "the motor leaks"}
 
-CUT_OUT = -1
-"""Column of ``/crane/load_state`` that forbids hoisting."""
-
 
 class Payload:
     """The load on a tension-only elastic wire under the true motion of the tip, and the winch that pays it out."""
@@ -47,7 +45,7 @@ class Payload:
         self._step_ns = scenario.step_ns
         self._step_s = seconds(scenario.step_ns)
         self._telemetry_every = scenario.telemetry_every
-        self.commands = JointCommands((WINCH,), scenario.operations, steered_joints(scenario))
+        self.commands = JointCommands((WINCH,), scenario.operations, steered_joints(scenario.controllers))
         self._controllers = ControllerCommands(scenario, (WINCH,))
         self._mode, self._command = np.full(1, VELOCITY, dtype=np.int64), np.zeros(1)
         self._hoisting_refused = False
@@ -97,7 +95,7 @@ class Payload:
 
     def _allowed(self, mode: Ints, command: Array, inputs: Signals) -> tuple[Ints, Array]:
         """Return what the winch is told: nothing that hoists while the crane is cut out, but compensation goes on."""
-        cut_out = inputs["/crane/load_state"][CUT_OUT] > 0.0
+        cut_out = not hoisting_allowed(inputs["/crane/load_state"])
         hoists = command[0] < (self._load.line[0] if mode[0] == POSITION else 0.0)
         self._hoisting_refused = cut_out and hoists
         if self._hoisting_refused:
